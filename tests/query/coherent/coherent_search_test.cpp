@@ -135,7 +135,8 @@ TEST_P(CarriedFrontOf, ThatIsFullIsFollowedByOneWithLessSlack) {
   Front kept(room);
   FrontSearch search(bodies_.plan, bodies_.kernels, 1 << 16);
   search.begin(kept, bodies_.wanted(bodies_.relative(scene_.pose), 0.4 * bodies_.voxel));
-  ASSERT_EQ(search.advance({}), FrontSearch::State::kFull);
+  search.advance({});
+  ASSERT_TRUE(search.is_full());
   CarriedFront none(bodies_, 1), front(bodies_, room), roomy(bodies_, 4 * room + 1000);
   Eigen::Isometry3d pose = scene_.pose;
   double widest = 0;
@@ -158,7 +159,8 @@ TEST_P(CarriedFrontOf, ThatIsFullIsNotTriedInEachTick) {
   Front all(1 << 16);
   FrontSearch search(bodies_.plan, bodies_.kernels, 1 << 16);
   search.begin(all, bodies_.wanted(at, 0.1 * bodies_.voxel));
-  ASSERT_EQ(search.advance({}), FrontSearch::State::kDone);
+  search.advance({});
+  ASSERT_TRUE(search.is_whole());
   const std::size_t room = all.lanes.pair_count - 1;
   CoherentSearch carried(bodies_.fixed, bodies_.moving, bodies_.policy, bodies_.plan,
                          bodies_.kernels,

@@ -1,4 +1,4 @@
-// The search that fills a front gives the same one in parts of any size as in one go, float for
+// The search that fills a front gives the same front in parts of any size and in one go, float for
 // float.
 
 #include "ist/query/coherent/front_search.h"
@@ -13,8 +13,6 @@
 namespace ist::test {
 namespace {
 
-using State = FrontSearch::State;
-
 constexpr std::size_t kRoom = 1 << 17;
 // Each slice of kPiece tests goes on: a piece of a step has no more.
 constexpr std::uint64_t kPiece = kPieceTests;
@@ -28,18 +26,27 @@ class FrontSearchOf : public ::testing::TestWithParam<SpherePolicy> {
     search.begin(front, wanted);
     int slices = 0;
     std::uint64_t spent = 0;
-    while (search.state() == State::kUnderWay && slices < 100'000) {
+    while (is_under_way(search) && slices < 100'000) {
       const std::uint64_t tests = slice(slices);
       search.advance({.tests = tests});
       EXPECT_LE(search.tests() - spent, tests);
       spent = search.tests();
       ++slices;
     }
-    EXPECT_EQ(search.state(), State::kDone);
+    EXPECT_TRUE(search.is_whole());
     return slices;
   }
+  static bool is_under_way(const FrontSearch& search) {
+    return !search.is_whole() && !search.is_full();
+  }
+  // Makes a front in one go. Returns whether it is whole.
+  static bool fill(FrontSearch& search, Front& front, const FrontSearch::Wanted& wanted) {
+    search.begin(front, wanted);
+    search.advance({});
+    return search.is_whole();
+  }
 
-  // The poses of a scene: where it is, and moved apart by some voxels.
+  // Returns the pose of a scene, and poses that are moved away from it.
   static std::vector<Eigen::Isometry3d> poses(const Scene& scene) {
     std::vector<Eigen::Isometry3d> all{scene.pose};
     Random random(5);
@@ -65,12 +72,11 @@ TEST_P(FrontSearchOf, GivesInSlicesWhatItGivesInOneGo) {
     FrontSearch search(scene_case.plan, scene_case.kernels, 1 << 16),
         tiny(scene_case.plan, scene_case.kernels, 1);
     for (const Eigen::Isometry3d& pose : poses(scene)) {
-      // With the widest the rows of inner steps are longer than a piece.
+      // With the widest extent the rows of inner steps are longer than a piece.
       for (const double voxels : {0.0, 0.4, 1.5, 8.0}) {
         SCOPED_TRACE(scene.name + ", " + std::to_string(voxels) + " voxels");
         const auto wanted = scene_case.wanted(scene_case.relative(pose), voxels * scene_case.voxel);
-        search.begin(whole, wanted);
-        if (search.advance({}) == State::kFull) continue;
+        if (!fill(search, whole, wanted)) continue;
         const std::uint64_t all = search.tests();
         pairs += whole.lanes.pair_count;
         const auto check = [&](FrontSearch& with, const auto& slice, bool same_tests) {
@@ -97,32 +103,33 @@ TEST_P(FrontSearchOf, GivesInSlicesWhatItGivesInOneGo) {
   EXPECT_GT(slices, 2'000);
 }
 
-// The clock ends a part as a number of tests does.
+// A deadline ends a part in the same way as a limit of tests.
 TEST_P(FrontSearchOf, GoesOnAfterADeadline) {
   const Scene& scene = solids()[0];
   const FrontCase scene_case(scene.fixed, scene.moving, GetParam());
   Front whole(kRoom), parts(kRoom);
   FrontSearch search(scene_case.plan, scene_case.kernels, 1 << 16);
   const auto wanted = scene_case.wanted(scene_case.relative(scene.pose), 0.4 * scene_case.voxel);
-  search.begin(whole, wanted);
-  ASSERT_EQ(search.advance({}), State::kDone);
+  ASSERT_TRUE(fill(search, whole, wanted));
   const std::uint64_t all = search.tests();
   for (const int looks : {1, 2, 3, 10}) {
     search.begin(parts, wanted);
     int times = 0;
-    while (search.state() == State::kUnderWay && ++times < 10'000) {
+    while (is_under_way(search) && ++times < 10'000) {
       search.advance(LateClock::budget_of(looks));
     }
-    EXPECT_EQ(search.state(), State::kDone) << looks << " looks";
+    EXPECT_TRUE(search.is_whole()) << looks << " looks";
     EXPECT_GT(times, 1);
     EXPECT_EQ(search.tests(), all);
     EXPECT_TRUE(same_front(parts, whole, GetParam() == SpherePolicy::kSlab));
   }
-  // A deadline that is past leaves it as it is.
+  // A deadline that is past changes nothing.
   search.begin(parts, wanted);
-  EXPECT_EQ(search.advance(LateClock::budget_of(0)), State::kUnderWay);
+  search.advance(LateClock::budget_of(0));
+  EXPECT_TRUE(is_under_way(search));
   EXPECT_EQ(search.tests(), 0u);
-  EXPECT_EQ(search.advance({}), State::kDone);
+  search.advance({});
+  EXPECT_TRUE(search.is_whole());
   EXPECT_TRUE(same_front(parts, whole, GetParam() == SpherePolicy::kSlab));
 }
 
@@ -132,43 +139,47 @@ TEST_P(FrontSearchOf, EndsWhereTheFrontIsFullOrTheTestsAreTooMany) {
   FrontSearch search(scene_case.plan, scene_case.kernels, 1 << 16);
   const auto wanted = scene_case.wanted(scene_case.relative(scene.pose), 0.4 * scene_case.voxel);
   Front whole(kRoom);
-  search.begin(whole, wanted);
-  ASSERT_EQ(search.advance({}), State::kDone);
+  ASSERT_TRUE(fill(search, whole, wanted));
   const std::uint64_t all = search.tests();
   for (const std::size_t room : {std::size_t{1}, std::size_t{100}, whole.lanes.pair_count - 1}) {
     Front small(room);
-    search.begin(small, wanted);
-    EXPECT_EQ(search.advance({}), State::kFull) << room;
+    EXPECT_FALSE(fill(search, small, wanted)) << room;
+    EXPECT_TRUE(search.is_full()) << room;
     EXPECT_LE(small.lanes.pair_count, room);
-    EXPECT_EQ(search.advance({}), State::kFull);  // and it stays so
+    const std::uint64_t tests = search.tests();
+    search.advance({});
+    EXPECT_TRUE(search.is_full());
+    EXPECT_FALSE(search.is_whole());
+    EXPECT_EQ(search.tests(), tests);  // nothing more is tested
     search.begin(small, wanted);
     int slices = 0;
-    while (search.advance({.tests = 2000}) == State::kUnderWay) ++slices;
-    EXPECT_EQ(search.state(), State::kFull) << room;
+    for (search.advance({.tests = 2000}); is_under_way(search); search.advance({.tests = 2000})) {
+      ++slices;
+    }
+    EXPECT_TRUE(search.is_full()) << room;
     EXPECT_GT(slices, 0);
   }
   Front some(kRoom);
   for (const std::uint64_t most : {std::uint64_t{0}, std::uint64_t{1000}, all - 1, all, all + 1}) {
     for (const std::uint64_t slice : {~std::uint64_t{0}, std::uint64_t{1500}}) {
       search.begin(some, scene_case.wanted(wanted.centre, wanted.extent, most));
-      int slices = 0;
-      while (search.advance({.tests = slice}) == State::kUnderWay && slices < 10'000) ++slices;
-      EXPECT_EQ(search.state(), most >= all ? State::kDone : State::kFull)
-          << most << " of " << all << " in slices of " << slice;
+      for (int slices = 0; is_under_way(search) && slices < 10'000; ++slices) {
+        search.advance({.tests = slice});
+      }
+      EXPECT_EQ(search.is_whole(), most >= all) << most << " of " << all << " by " << slice;
+      EXPECT_EQ(search.is_full(), most < all) << most << " of " << all << " by " << slice;
       EXPECT_LE(search.tests(), most);
     }
   }
-  // What is dropped is not gone on with; the next one is whole again.
+  // A search that is left unfinished does not change the next one.
   search.begin(some, wanted);
   search.advance({.tests = 5000});
-  search.drop();
-  EXPECT_EQ(search.advance({}), State::kNone);
-  search.begin(some, wanted);
-  EXPECT_EQ(search.advance({}), State::kDone);
+  EXPECT_TRUE(is_under_way(search));
+  EXPECT_TRUE(fill(search, some, wanted));
   EXPECT_TRUE(same_front(some, whole, GetParam() == SpherePolicy::kSlab));
 }
 
-// An empty front bounds the distance from above, unless that was not asked for.
+// An empty front bounds the distance from above if that was wanted.
 TEST_P(FrontSearchOf, BoundsTheDistanceOfBodiesThatAreApart) {
   const Scene& scene = solids()[0];  // a ball of radius 1, a block whose face is at x = -0.9
   const FrontCase scene_case(scene.fixed, scene.moving, GetParam());
@@ -176,14 +187,12 @@ TEST_P(FrontSearchOf, BoundsTheDistanceOfBodiesThatAreApart) {
   Front front(kRoom);
   for (const double gap : {0.2, 0.3, 0.5}) {
     auto wanted = scene_case.wanted(scene_case.relative(shift({1.9 + gap, 0, 0})), 0.1);
-    search.begin(front, wanted);
-    ASSERT_EQ(search.advance({}), State::kDone);
+    ASSERT_TRUE(fill(search, front, wanted));
     EXPECT_TRUE(front.empty());
     EXPECT_GE(front.upper, gap - 1e-9);
     EXPECT_TRUE(std::isfinite(front.upper));
     wanted.measured = Measured::kNothing;
-    search.begin(front, wanted);
-    ASSERT_EQ(search.advance({}), State::kDone);
+    ASSERT_TRUE(fill(search, front, wanted));
     EXPECT_EQ(front.upper, HUGE_VAL);
   }
 }

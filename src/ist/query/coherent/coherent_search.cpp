@@ -9,7 +9,7 @@
 namespace ist {
 namespace {
 
-// The pairs of a front that are tested between two looks at the clock.
+// The number of pairs that are tested between two looks at the clock.
 constexpr std::size_t kPart = 2048;
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
@@ -46,8 +46,8 @@ CoherentSearch::~CoherentSearch() {
   job_.wait_idle();
 }
 
-// Those two points whose distance was measured were near each other at the front's centre, and need
-// not be at `pose`: so the motion is that from `pose` back to there.
+// `upper` was measured at the front's centre. So the largest displacement from `pose` back to that
+// centre is added.
 double CoherentSearch::upper_at(const Front& front, const RelativePose& pose) const noexcept {
   if (!(front.upper < kUnknown)) return kUnknown;
   return front.upper + bound_.between(pose, front.centre, front.upper);
@@ -60,17 +60,6 @@ std::optional<double> CoherentSearch::motion_to(const Front& front, const Relati
   return std::nullopt;
 }
 
-// Takes up the next front, if it is whole and holds at `pose`.
-bool CoherentSearch::adopt(const RelativePose& pose, double need) noexcept {
-  if (search_.state() != FrontSearch::State::kDone || !motion_to(*next_, pose, need)) return false;
-  std::swap(kept_, next_);
-  holds_ = true;
-  search_tests_ = search_.tests();
-  search_.drop();
-  schedule_.took_up(kept_->empty(), kept_->extent - need);
-  return true;
-}
-
 CoherentSearch::FrontAt CoherentSearch::find(const RelativePose& pose, double margin,
                                              const Budget& budget) noexcept {
   if (worker_) worker_->tick(std::chrono::steady_clock::now(), period_);
@@ -78,102 +67,127 @@ CoherentSearch::FrontAt CoherentSearch::find(const RelativePose& pose, double ma
   track_.add(pose, bound_, need);
   FrontAt found;
   const auto answer_from_kept = [&] {
-    if (const auto motion = motion_to(*kept_, pose, need)) {
-      found.front = kept_;
+    if (const auto motion = motion_to(kept(), pose, need)) {
+      found.front = &kept();
       found.motion = *motion;
-      if (kept_->empty()) found.upper = upper_at(*kept_, pose);
+      if (kept().empty()) found.upper = upper_at(kept(), pose);
     }
     return found.front != nullptr;
   };
   const bool busy = job_.busy();
   if (!busy) {
-    drop_stale();
-    static_cast<void>(adopt(pose, need));
+    settle();
+    static_cast<void>(take_up(pose, need));
   }
-  if (holds_ && answer_from_kept()) return found;
-  holds_ = false;
+  if (kept().state == State::kKept && answer_from_kept()) return found;
+  kept().state = State::kEmpty;  // it is used up
   if (busy) return found;
 
-  // The next front may be half done, or was to be made at once and a deadline came between; or the
-  // body is nearly at rest, and a front with little slack costs little more than a fresh search.
-  const bool go_on = search_.state() == FrontSearch::State::kUnderWay &&
-                     motion_to(*next_, pose, need) && search_.most_tests() == kNoLimit &&
-                     (at_once_ || 2 * search_.tests() > search_tests_);
+  // The search under way is ended now if a deadline interrupted a search at once, or if over half
+  // of it is done. Else a new search with little slack is made if the body is nearly at rest: it
+  // costs little more than a fresh search.
+  const bool go_on = is_searching() && motion_to(next(), pose, need) &&
+                     search_.most_tests() == kNoLimit &&
+                     (next().state == State::kAtOnce || 2 * search_.tests() > search_tests_);
   if (!go_on) {
     const double slack = schedule_.slack_at_once();
     if (!schedule_.is_worth_at_once(slack, track_.speed()) || !may_fit()) return found;
-    want(pose, need + slack, kNoLimit);
-    at_once_ = true;
+    want(State::kAtOnce, pose, need + slack, kNoLimit);
   }
   const std::uint64_t before = search_.tests();
-  search_.advance(budget);
+  advance(budget);
   found.tests = search_.tests() - before;
-  give_up_where_full();
-  if (adopt(pose, need)) answer_from_kept();
+  give_up_if_full();
+  if (take_up(pose, need)) answer_from_kept();
   return found;
 }
 
-void CoherentSearch::want(const RelativePose& centre, double extent,
+// Begins the search for the next front, in place of any other one.
+void CoherentSearch::want(State by, const RelativePose& centre, double extent,
                           std::uint64_t most_tests) noexcept {
-  search_.begin(*next_, {centre, to_float(centre, fixed_, moving_, extent), extent,
+  search_.begin(next(), {centre, to_float(centre, fixed_, moving_, extent), extent,
                          last_pairs_ == 0 ? Measured::kUpper : Measured::kNothing, most_tests});
+  next().state = by;
 }
 
-bool CoherentSearch::may_fit() const noexcept {
-  return schedule_.may_fit(last_pairs_, kept_->lanes.pair_capacity);
-}
-
-void CoherentSearch::give_up_where_full() noexcept {
-  if (search_.state() != FrontSearch::State::kFull) return;
-  schedule_.was_full(search_.most_tests() != kNoLimit);  // a clearance has a limit of tests
-  search_.drop();
-}
-
-// Begins the next front, if it is time for it and worth it.
+// Begins the search for the next front if it is time for it, and if the front is worth it.
 void CoherentSearch::want_next(const RelativePose& pose, double need) noexcept {
   const Pace pace = track_.pace(bound_, need);
   const double slack = schedule_.slack(pace);
-  const double reserve = FrontSchedule::reserve(kept_->extent - need, pace);
-  if (holds_ &&
-      motion_to(*kept_, track_.ahead(FrontSchedule::ticks_ahead(slack, pace)), need + reserve) &&
-      !FrontSchedule::is_wasteful(kept_->extent - need, slack, kept_->lanes.pair_count,
+  const double reserve = FrontSchedule::reserve(kept().extent - need, pace);
+  const bool holds = kept().state == State::kKept;
+  if (holds &&
+      motion_to(kept(), track_.ahead(FrontSchedule::ticks_ahead(slack, pace)), need + reserve) &&
+      !FrontSchedule::is_wasteful(kept().extent - need, slack, kept().lanes.pair_count,
                                   last_pairs_)) {
     return;
   }
   double beyond = slack;
   const bool apart = last_pairs_ == 0;
   if (apart) {
-    const double far = holds_ && kept_->empty() ? upper_at(*kept_, pose) : kUnknown;
+    const double far = holds && kept().empty() ? upper_at(kept(), pose) : kUnknown;
     const double leaves = 2 * (fixed_.largest_leaf + moving_.largest_leaf);
     beyond = std::max(slack, schedule_.clearance(far - leaves, need));
   }
   if (!schedule_.is_worth(beyond, pace.speed) || !may_fit()) return;
-  at_once_ = false;
-  want(track_.ahead(FrontSchedule::ticks_to_centre(beyond, pace)), need + beyond,
+  want(State::kAhead, track_.ahead(FrontSchedule::ticks_to_centre(beyond, pace)), need + beyond,
        apart ? FrontSchedule::most_for_clearance(search_tests_) : kNoLimit);
+}
+
+bool CoherentSearch::may_fit() const noexcept {
+  return schedule_.may_fit(last_pairs_, fronts_[kept_].lanes.pair_capacity);
+}
+
+void CoherentSearch::advance(const Budget& budget) noexcept {
+  search_.advance(budget);
+  settle();
+}
+
+// Enters the result of the search, which the worker may have made.
+void CoherentSearch::settle() noexcept {
+  if (next().state == State::kForgotten) next().state = State::kEmpty;
+  if (!is_searching()) return;
+  if (search_.is_whole()) next().state = State::kReady;
+  if (search_.is_full()) next().state = State::kFull;
+}
+
+// Lets the next front answer if it is whole and holds at `pose`. Returns whether it does.
+bool CoherentSearch::take_up(const RelativePose& pose, double need) noexcept {
+  if (next().state != State::kReady || !motion_to(next(), pose, need)) return false;
+  kept().state = State::kEmpty;
+  kept_ = 1 - kept_;
+  kept().state = State::kKept;
+  search_tests_ = search_.tests();
+  schedule_.took_up(kept().empty(), kept().extent - need);
+  return true;
+}
+
+void CoherentSearch::give_up_if_full() noexcept {
+  if (next().state != State::kFull) return;
+  schedule_.was_full(search_.most_tests() != kNoLimit);  // only a clearance has a limit of tests
+  next().state = State::kEmpty;
 }
 
 void CoherentSearch::prepare(const RelativePose& pose, double margin, std::uint64_t leaf_pairs,
                              std::uint64_t tests, const Budget& budget) noexcept {
   last_pairs_ = leaf_pairs;
-  if (tests > 0 && !holds_) {
+  if (tests > 0 && kept().state != State::kKept) {
     search_tests_ = tests;
     schedule_.searched();
   }
   schedule_.tick();
   if (job_.busy() || budget.is_past()) return;
-  drop_stale();
-  give_up_where_full();
-  using State = FrontSearch::State;
+  settle();
+  give_up_if_full();
   const double need = most_apart(pose, fixed_, moving_, margin);
-  if (search_.state() != State::kNone &&
-      !motion_to(*next_, track_.ahead(FrontSchedule::kTicksAhead), need)) {
-    search_.drop();  // the body went another way
+  if (next().state != State::kEmpty &&
+      !motion_to(next(), track_.ahead(FrontSchedule::kTicksAhead), need)) {
+    next().state = State::kEmpty;  // the body went another way
   }
-  if (search_.state() == State::kNone) want_next(pose, need);
-  if (search_.state() != State::kUnderWay) return;
+  if (next().state == State::kEmpty) want_next(pose, need);
+  if (!is_searching()) return;
   if (worker_ && worker_->offer(job_)) return;
-  search_.advance(budget.within(FrontSchedule::slice(search_tests_, tests > 0)));
+  advance(budget.within(FrontSchedule::slice(search_tests_, tests > 0)));
 }
 
 template <class Sink>
@@ -184,7 +198,7 @@ bool CoherentSearch::pass_on(const Front& front, const SearchPose& pose, const B
   kernels_.turn_front(front.lanes, plan_.steps().back(), pose, kSurfaces, rows_.rows());
   const std::size_t pairs = front.lanes.pair_count;
   for (std::size_t begin = 0; begin < pairs; begin += kPart) {
-    // The first part is tested even after the deadline: rows are turned, and it takes 3 µs.
+    // The first part is tested even after the deadline: its rows are turned, and it takes 3 µs.
     if ((begin > 0 && budget.is_past()) || sink.stopped()) return false;
     pass_on(front.lanes, begin, std::min(begin + kPart, pairs), sink);
   }
@@ -215,17 +229,11 @@ void CoherentSearch::pass_on(const FrontLanes& front, std::size_t begin, std::si
 }
 
 void CoherentSearch::forget() noexcept {
-  holds_ = at_once_ = false;
+  kept().state = State::kEmpty;
+  next().state = job_.busy() ? State::kForgotten : State::kEmpty;
   track_ = {};
   schedule_.forget();
   last_pairs_ = search_tests_ = 0;
-  stale_ = true;
-  if (!job_.busy()) drop_stale();
-}
-
-void CoherentSearch::drop_stale() noexcept {
-  if (stale_) search_.drop();
-  stale_ = false;
 }
 
 std::size_t CoherentSearch::bytes_for(const SearchPlan& plan,

@@ -20,13 +20,13 @@ struct CoherentOptions {
   std::chrono::nanoseconds period;
 };
 
-/// Carries a front of leaf pairs from one pose to the next. While the motion since the front was
-/// made stays within its slack, its pairs are all that can overlap, and need only be tested again;
-/// an empty front is a clearance. The next front is made a few ticks ahead, in parts that are
-/// counted in tests, or by the resident worker.
+/// Carries a front of leaf pairs from one pose to the next. No other pairs can overlap while the
+/// motion since the front was made stays within its slack, so only its pairs are tested again. An
+/// empty front is a clearance. The next front is made a few ticks ahead, by the resident worker or
+/// in parts that are limited in tests. Front has a drawing of the states.
 ///
-/// Nothing here changes an answer: that is the set of leaf pairs whose bounds overlap, however it
-/// is found.
+/// An answer is the set of leaf pairs whose bounds overlap. It is the same with a front and
+/// without.
 class CoherentSearch {
  public:
   CoherentSearch(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
@@ -37,45 +37,58 @@ class CoherentSearch {
 
   /// A front that holds all leaf pairs of a pose.
   struct FrontAt {
-    const Front* front = nullptr;  ///< null where a fresh search is to answer
+    const Front* front = nullptr;  ///< null if a fresh search must answer
     std::uint64_t tests = 0;       ///< made at this pose to find it
     double motion = 0;             ///< since the front's centre, mesh units
-    double upper = 0;              ///< of an empty one: bounds the distance, mesh units
+    double upper = 0;              ///< bounds the distance if the front is empty, mesh units
   };
-  /// Begins a tick, at a pose where bounds no farther apart than `margin` count. The budget must
-  /// have no limit of tests.
+  /// Begins a tick. Bounds that are no farther apart than `margin` count as overlapping. The budget
+  /// must have no limit of tests.
   [[nodiscard]] FrontAt find(const RelativePose& pose, double margin,
                              const Budget& budget) noexcept;
-  /// Ends a tick that had an answer, found by as many tests of a search: goes on with the next
-  /// front. The budget must have no limit of tests.
+  /// Ends a tick that had a complete answer, and goes on with the next front. `tests` counts the
+  /// tests of the searches of this tick: 0 if a front answered without any. The budget must have no
+  /// limit of tests.
   void prepare(const RelativePose& pose, double margin, std::uint64_t leaf_pairs,
                std::uint64_t tests, const Budget& budget) noexcept;
 
-  /// Tests the pairs of a front again and passes on those that overlap, in order. Returns whether
-  /// that came to its end: neither the deadline nor the sink ended it.
+  /// Tests the pairs of a front again, and passes on the pairs that overlap, in order. Returns
+  /// whether all were tested: neither the deadline nor the sink ended it.
   template <class Sink>
   [[nodiscard]] bool pass_on(const Front& front, const SearchPose& pose, const Budget& budget,
                              Sink& sink) noexcept;
-  /// Begins afresh, as if there had been no pose. Does not wait for the worker.
+  /// Forgets all poses and both fronts. Does not wait for the worker.
   void forget() noexcept;
   /// Returns the bytes that a search with these options reserves.
   [[nodiscard]] static std::size_t bytes_for(const SearchPlan& plan,
                                              const CoherentOptions& options) noexcept;
 
  private:
+  using State = Front::State;
+
   [[nodiscard]] double upper_at(const Front& front, const RelativePose& pose) const noexcept;
-  // Returns the motion of a front's centre to `pose`, or nothing where it may lack a pair.
+  // Returns the motion from a front's centre to `pose`, or nothing if the front may lack a pair.
   [[nodiscard]] std::optional<double> motion_to(const Front& front, const RelativePose& pose,
                                                 double need) const noexcept;
-  [[nodiscard]] bool adopt(const RelativePose& pose, double need) noexcept;
   void pass_on(const FrontLanes& front, std::size_t begin, std::size_t end,
                LeafPairSink& sink) noexcept;
   void pass_on(const FrontLanes& front, std::size_t begin, std::size_t end,
                ContactOutput& sink) noexcept;
-  void want(const RelativePose& centre, double extent, std::uint64_t most_tests) noexcept;
+
+  // The transitions of Front::State, in the order of its drawing. The worker must not be busy,
+  // except in forget().
+  void want(State by, const RelativePose& centre, double extent, std::uint64_t most_tests) noexcept;
   void want_next(const RelativePose& pose, double need) noexcept;
-  void give_up_where_full() noexcept;
-  void drop_stale() noexcept;
+  void advance(const Budget& budget) noexcept;
+  void settle() noexcept;
+  [[nodiscard]] bool take_up(const RelativePose& pose, double need) noexcept;
+  void give_up_if_full() noexcept;
+
+  [[nodiscard]] Front& kept() noexcept { return fronts_[kept_]; }
+  [[nodiscard]] Front& next() noexcept { return fronts_[1 - kept_]; }
+  [[nodiscard]] bool is_searching() noexcept {
+    return next().state == State::kAhead || next().state == State::kAtOnce;
+  }
   [[nodiscard]] bool may_fit() const noexcept;
 
   const SearchPlan& plan_;
@@ -84,13 +97,10 @@ class CoherentSearch {
   MotionBound bound_;
   PoseTrack track_;
   Front fronts_[2];
-  Front *kept_ = fronts_, *next_ = fronts_ + 1;
-  bool holds_ = false;  // kept_ is whole
-  bool stale_ = false;  // the next front was forgotten while the worker was busy with it
-  FrontSearch search_;  // for next_; the worker's while the job is busy
+  std::size_t kept_ = 0;  // the other front is the next one
+  FrontSearch search_;    // for the next front; the worker's while the job is busy
   FrontRowMemory rows_;
   FrontSchedule schedule_;
-  bool at_once_ = false;            // the next front was to be made within a tick
   std::uint64_t last_pairs_ = 0;    // of the last answer
   std::uint64_t search_tests_ = 0;  // of the last search that was whole
   std::chrono::nanoseconds period_;

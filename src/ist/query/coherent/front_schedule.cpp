@@ -5,33 +5,66 @@
 namespace ist {
 namespace {
 
-// The slack of a front, in voxels: at rest, at most, and of one that is made within a tick.
-constexpr double kLeastSlack = 0.05, kMostSlack = 0.4, kSlackAtOnce = 0.1;
-// The ticks for which a slack should last: of directed motion, and of trembling.
-constexpr double kTicksOfSlack = 20, kTicksOfTrembling = 4;
-// A front that would last for fewer ticks is not worth its search: by the query's own thread, and
-// by the resident worker.
-constexpr double kFewestTicks = 8, kFewestTicksHelped = 4;
-// A front is wasteful that has so much more slack than is wanted, and so many more pairs than
-// overlap.
-constexpr double kTooWide = 1.9, kTooMany = 1.25;
-// The part of the ticks to a front's centre by which the next one is begun ahead, for a hand that
-// moves evenly may yet make a step that is five times the others; and the part of the slack of a
-// body whose motion has no direction.
-constexpr double kPartAhead = 0.4, kReserve = 0.25;
-// The part of the fewest ticks ahead that slices are made for, and the part of a search that is
-// added to a tick that searches.
-constexpr double kPartOfTicks = 0.6, kPartOfSearch = 0.2;
-constexpr double kLeastSlice = 2000;  // tests
-// The factors by which the next slack is wider after a front that had room, or after a fresh
-// search, and narrower after one that had not.
-constexpr double kWider = 1.25, kWiderFresh = 1.02, kNarrower = 0.5;
-// The ticks without a front after one that was full: twice as many each time, up to this.
+// The slack of a front for a body at rest, voxels. A thinner front would not outlast any tremble.
+constexpr double kLeastSlack = 0.05;
+// The largest slack of a front, voxels. A wider front has more pairs to test in each tick.
+constexpr double kMostSlack = 0.4;
+// The slack of a front that is made within a tick, voxels. Its search delays the answer of that
+// tick, so it is kept small.
+constexpr double kSlackAtOnce = 0.1;
+
+// A slack should last for this many ticks of motion in one direction.
+constexpr double kTicksOfSlack = 20;
+// A slack should last for this many ticks as fast as the fastest one of late: the body may tremble.
+constexpr double kTicksOfTrembling = 4;
+
+// A front must last for this many ticks to be worth its search, if the query's own thread makes it.
+constexpr double kFewestTicks = 8;
+// The same if the resident worker makes it: then no tick waits for the search.
+constexpr double kFewestTicksHelped = 4;
+
+// A front is wasteful only if its slack exceeds the wanted one by this factor.
+constexpr double kTooWide = 1.9;
+// And only if its pairs outnumber the overlapping ones by this factor. Else a new one saves little.
+constexpr double kTooMany = 1.25;
+
+// The next front is begun ahead by this part of the ticks to its centre. Even a steady hand makes
+// single steps that are five times the mean.
+constexpr double kPartAhead = 0.4;
+// The next front is begun with this part of the slack left if the motion has no direction: a device
+// may report places in steps, and one step must not lead out of the front.
+constexpr double kReserve = 0.25;
+
+// Slices are made so large that a front is whole after this part of the fewest ticks ahead. The
+// rest is in reserve for ticks without time.
+constexpr double kPartOfTicks = 0.6;
+// A tick that has made a search adds at most this part of it for the next front, so that no tick
+// takes much longer than its search.
+constexpr double kPartOfSearch = 0.2;
+// The smallest slice, tests. Smaller ones would cost more in overhead than in tests.
+constexpr double kLeastSlice = 2000;
+
+// The widest slack grows by this factor after a front that had room.
+constexpr double kWider = 1.25;
+// It grows by this factor after a fresh search: slowly, because nothing shows that a front has
+// room.
+constexpr double kWiderFresh = 1.02;
+// It shrinks by this factor after a front that had no room.
+constexpr double kNarrower = 0.5;
+// The longest pause after a front that had no room, ticks. The pause doubles each time until then,
+// so that hopeless attempts become rare.
 constexpr std::uint32_t kLongestPause = 255;
-// The factors by which the next clearance asks for more after one came true, and for less after one
-// did not; the part of a known distance that it asks for at most; and the most tests that it makes.
-constexpr double kClearer = 2, kLessClear = 0.25, kClearPart = 0.8;
-constexpr std::uint64_t kClearTests = 2, kSpareTests = 10'000;
+
+// The next clearance is this many times the last one that was found.
+constexpr double kClearer = 2;
+// It is this part of the last one if that was not found.
+constexpr double kLessClear = 0.25;
+// A clearance is at most this part of a known distance: beyond it there would be pairs.
+constexpr double kClearPart = 0.8;
+// The search for a clearance may make this many times the tests of the last whole search.
+constexpr std::uint64_t kClearTests = 2;
+// It may make so many tests more, for bodies so far apart that the last search made hardly any.
+constexpr std::uint64_t kSpareTests = 10'000;
 
 }  // namespace
 

@@ -7,74 +7,78 @@
 
 namespace ist {
 
-/// Decides when a front is worth its search and how wide it is to be. No answer hangs on it.
+/// Decides when a front is worth its search, and how wide it is. No answer depends on it.
 ///
-/// A front lasts while motion stays within its slack. One that is centred where the body goes lasts
-/// for twice its slack; one that has more slack has more pairs to test, and its search takes longer
+/// A front lasts while the motion stays within its slack. If its centre lies ahead of the body, it
+/// lasts for twice its slack. A wider front has more pairs to test, and its search takes longer
 /// (perf/NOTES.md, A front kept).
 class FrontSchedule {
  public:
-  /// The ticks before a front is used up in which the next one is made, at least, where the body
+  /// The next front is made at least this many ticks before the last one is used up, if the body
   /// goes one way.
   static constexpr double kTicksAhead = 4;
 
-  /// @param voxel_size the lesser of two voxel sizes, mesh units
-  /// @param helped     the resident worker searches
+  /// @param voxel_size the smaller of two voxel sizes, mesh units
+  /// @param helped     whether the resident worker searches
   FrontSchedule(double voxel_size, bool helped) noexcept;
 
-  /// Returns the slack that the next front is to have, mesh units.
+  /// Returns the slack for the next front, mesh units.
   [[nodiscard]] double slack(const Pace& pace) const noexcept;
-  /// Returns the slack of a front that is made within a tick.
+  /// Returns the slack for a front that is made within a tick, mesh units.
   [[nodiscard]] double slack_at_once() const noexcept;
-  /// Returns how far beyond what is needed to look where there are no pairs, mesh units, if leaves
-  /// are known to be no farther apart than `known`.
+  /// Returns how far beyond `need` to search if there are no pairs, mesh units. Leaves are known to
+  /// be `known` apart.
   [[nodiscard]] double clearance(double known, double need) const noexcept;
 
-  /// Returns whether a front with that slack lasts long enough: one that is centred ahead, or one
-  /// that is made within a tick.
+  /// Returns whether a front with this slack lasts long enough if it is centred ahead.
   [[nodiscard]] bool is_worth(double slack, double speed) const noexcept {
     return fewest_ticks_ * speed <= 2 * slack;
   }
+  /// Returns whether a front with this slack lasts long enough if it is made within a tick.
   [[nodiscard]] bool is_worth_at_once(double slack, double speed) const noexcept {
     return fewest_ticks_ * speed <= slack;
   }
-  /// Returns whether a front has far more slack than is wanted, and far more pairs than overlap.
+  /// Returns whether a front has much more slack than wanted, and many more pairs than overlap.
   [[nodiscard]] static bool is_wasteful(double slack, double wanted, std::size_t pairs,
                                         std::uint64_t overlapping) noexcept;
-  /// Returns whether a front is to be tried: that many pairs overlap, and it has so much room.
+  /// Returns whether to try a front with room for `room` pairs, if `overlapping` pairs overlap. It
+  /// returns false during the pause after a front that had no room.
   [[nodiscard]] bool may_fit(std::uint64_t overlapping, std::size_t room) const noexcept {
     return wait_ == 0 && overlapping + overlapping / 8 < room;
   }
-  /// Returns how many ticks ahead a front with that slack is to be centred.
+  /// Returns how many ticks ahead the centre of a front with this slack should lie.
   [[nodiscard]] static double ticks_to_centre(double slack, const Pace& pace) noexcept;
-  /// Returns how many ticks before it is used up a front is followed by one with that slack.
+  /// Returns how many ticks before the last front is used up the next one, with this slack, is
+  /// begun.
   [[nodiscard]] static double ticks_ahead(double slack, const Pace& pace) noexcept;
-  /// Returns how much of its slack a front has left where it is followed by the next one, if
-  /// nothing tells where the body goes: a device may tell places in steps.
+  /// Returns the slack at which the next front is begun if the motion has no direction, mesh units;
+  /// 0 if it has one.
   [[nodiscard]] static double reserve(double slack, const Pace& pace) noexcept;
-  /// Returns the tests to make in a tick for a front, of a search that makes `whole` in all.
+  /// Returns the tests that a tick may spend on the next front. Its search takes about `whole`
+  /// tests. `searched` says that the tick has made a search already.
   [[nodiscard]] static std::uint64_t slice(std::uint64_t whole, bool searched) noexcept;
-  /// Returns the most tests that the search for a clearance is allowed.
+  /// Returns the most tests of the search for a clearance. The last search made `whole` tests.
   [[nodiscard]] static std::uint64_t most_for_clearance(std::uint64_t whole) noexcept;
 
-  /// To be told of a fresh search that answered; of a front that was taken up, and was empty as far
-  /// as `clear` beyond what was needed, or not; and of one that was full, or of a clearance that
-  /// took too many tests.
+  /// Call after a fresh search that answered.
   void searched() noexcept;
+  /// Call when a front is taken up. `clear` is its extent beyond the need, if it is empty.
   void took_up(bool empty, double clear) noexcept;
+  /// Call when a front had no room, or when the search for a clearance took too many tests.
   void was_full(bool clearance) noexcept;
   /// Begins afresh.
   void forget() noexcept;
-  /// To be called once in each tick that has a complete answer.
+  /// Call once in each tick that has a complete answer.
   void tick() noexcept { wait_ -= wait_ > 0 ? 1 : 0; }
 
  private:
   void ask_for(double factor) noexcept;
 
   double voxel_size_, fewest_ticks_;
-  double widest_;                       // slack that memory allows
-  double clearance_;                    // to ask for where there are no pairs
-  std::uint32_t pause_ = 0, wait_ = 0;  // ticks without a front, after a full one; those left
+  double widest_;            // the slack that memory allows
+  double clearance_;         // the next one to search for
+  std::uint32_t pause_ = 0;  // ticks without a front after a full one
+  std::uint32_t wait_ = 0;   // ticks of that pause that are left
 };
 
 }  // namespace ist

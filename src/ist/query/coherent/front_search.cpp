@@ -5,7 +5,7 @@
 namespace ist {
 namespace {
 
-// Keeps all leaf pairs, as long as there is room.
+// Keeps all leaf pairs, until there is no room.
 class Keeper : public VisitorBase {
  public:
   Keeper(const SearchPose& pose, Measured measured, Front& front, DistanceBounds& bounds,
@@ -20,7 +20,7 @@ class Keeper : public VisitorBase {
                         : batch.measure(measured_, pose_, bounds_, most);
     meter_.spend(made.tests);
     full_ = batch.step.last && made.full;
-    return full_ ? Advanced{0, false} : made;  // no test ends the search
+    return full_ ? Advanced{0, false} : made;  // a search ends if no test is made
   }
   static bool leaves(const Frontier& /*none*/) noexcept { return true; }
 
@@ -47,22 +47,20 @@ void FrontSearch::begin(Front& front, const Wanted& wanted) noexcept {
   bounds_ = {};
   tests_ = 0;
   position_ = search_.roots();
-  state_ = State::kUnderWay;
+  full_ = false;
 }
 
-FrontSearch::State FrontSearch::advance(const Budget& budget) noexcept {
-  if (state_ != State::kUnderWay) return state_;
+void FrontSearch::advance(const Budget& budget) noexcept {
+  if (is_whole() || full_) return;
   const std::uint64_t left = wanted_.most_tests - std::min(wanted_.most_tests, tests_);
   Keeper keeper(wanted_.pose, wanted_.measured, *front_, bounds_, BudgetMeter(budget.within(left)));
   position_ = search_.resume(position_, keeper);
   tests_ += keeper.tests();
-  if (position_.is_end()) {
-    front_->upper = bounds_.upper - wanted_.extent;  // by which radii were inflated
-    state_ = State::kDone;
-  } else if (keeper.full() || (budget.tests >= left && !budget.is_past())) {
-    state_ = State::kFull;
+  if (is_whole()) {
+    front_->upper = bounds_.upper - wanted_.extent;  // the radii were inflated by the extent
+  } else {
+    full_ = keeper.full() || (budget.tests >= left && !budget.is_past());
   }
-  return state_;
 }
 
 }  // namespace ist

@@ -8,22 +8,16 @@
 
 namespace ist {
 
-/// The search that fills a front. It may be made in parts, by one thread or another.
+/// The search that fills a front. It may be made in parts, on several threads in turn.
 class FrontSearch {
  public:
-  enum class State : std::uint8_t {
-    kNone,      ///< none is wanted
-    kUnderWay,  ///< begun, or to begin
-    kDone,      ///< the front is whole
-    kFull,      ///< the front had no room for all pairs, or the tests were too many
-  };
-  /// The pairs wanted, and the search for them.
+  /// The pairs that are wanted.
   struct Wanted {
     RelativePose centre;
-    SearchPose pose;    ///< `centre`, for all leaf pairs within `extent`
-    double extent;      ///< mesh units
-    Measured measured;  ///< kUpper to bound the distance, if the front comes out empty
-    std::uint64_t most_tests;
+    SearchPose pose;           ///< `centre`, for all leaf pairs within `extent`
+    double extent;             ///< mesh units
+    Measured measured;         ///< kUpper to bound the distance, if the front comes out empty
+    std::uint64_t most_tests;  ///< the search is given up after these
   };
 
   /// Reserves the memory of a Search.
@@ -32,12 +26,14 @@ class FrontSearch {
 
   /// Begins a search for `front`, which stays the caller's.
   void begin(Front& front, const Wanted& wanted) noexcept;
-  /// Goes on with it within a budget, of this part alone, and a deadline.
-  State advance(const Budget& budget) noexcept;
-  void drop() noexcept { state_ = State::kNone; }
+  /// Searches on until it is whole, full, or at the end of the budget, which is for this call
+  /// alone. Does nothing if it is whole or full already. Call begin() first.
+  void advance(const Budget& budget) noexcept;
 
-  [[nodiscard]] State state() const noexcept { return state_; }
-  [[nodiscard]] const Front& front() const noexcept { return *front_; }
+  /// Returns whether the front holds all pairs.
+  [[nodiscard]] bool is_whole() const noexcept { return position_.is_end(); }
+  /// Returns whether the front had no room for all pairs, or the search needs too many tests.
+  [[nodiscard]] bool is_full() const noexcept { return full_; }
   [[nodiscard]] std::uint64_t most_tests() const noexcept { return wanted_.most_tests; }
   /// Returns the tests made since begin().
   [[nodiscard]] std::uint64_t tests() const noexcept { return tests_; }
@@ -49,7 +45,7 @@ class FrontSearch {
   Wanted wanted_{};
   DistanceBounds bounds_;
   std::uint64_t tests_ = 0;
-  State state_ = State::kNone;
+  bool full_ = false;
 };
 
 }  // namespace ist
