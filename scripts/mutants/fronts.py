@@ -50,7 +50,7 @@ MUTANTS = [
              "if (sink.stopped()) return false;\n    if (begin > 0 && budget.is_past()) continue;\n")],
            ["coherent_test *Deadline*"]),
     Mutant("front-within-a-budget", "a query with a limit of tests is answered from the front",
-           [(QUERY_STATE, "if (coherent && !budget.has_tests()) {", "if (coherent) {")], ["coherent_test *Deadline*"]),
+           [(QUERY_STATE, "= coherent && !budget.has_tests();", "= coherent.has_value();")], ["coherent_test *Deadline*"]),
     Mutant("front-taken-from-the-worker", "the next front is taken up while the worker makes it",
            [(COHERENT + "coherent_search.cpp", "const bool busy = job_.busy();", "const bool busy = false;"),
             (COHERENT + "coherent_search.cpp", "if (job_.busy() || budget.is_past()) return;", "if (budget.is_past()) return;")],

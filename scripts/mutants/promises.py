@@ -4,15 +4,15 @@ from .mutant import Mutant, BOUNDS_INL, VOXELIZER, MEASURE, QUERY_STATE, CAPI, H
 
 MUTANTS = [
     Mutant("stopped-tells-the-roots", "a search that a budget ended tells the interval of the roots",
-           [(QUERY_STATE, "if (!result.complete || measured == Measured::kBoth) {", "if (result.complete && measured == Measured::kBoth) {")],
+           [(QUERY_STATE, "if (!complete || measured == Measured::kBoth) {", "if (complete && measured == Measured::kBoth) {")],
            ["search_test StoppedSearch.*"]),
     Mutant("level-of-the-roots", "a search that a budget ended tells the level of the roots",
            [(QUERY_STATE, "  result.complete = result.level == 0;\n",
              "  result.complete = result.level == 0;\n  if (!result.complete) result.level = static_cast<int>(plan.steps().size());\n")],
            ["search_test StoppedSearch.*"]),
     Mutant("interval-without-an-end", "the upper end of an interval forgets the roots, so that without a test it is infinite",
-           [(QUERY_STATE, "    upper = std::min(upper, end.bounds.upper - bodies.margin);\n",
-             "    upper = end.bounds.upper - bodies.margin;\n")],
+           [(QUERY_STATE, "    upper = std::min(upper, bounds.upper - bodies.margin);\n",
+             "    upper = bounds.upper - bodies.margin;\n")],
            ["search_test Targets/Within.ABudgetOfTests*"]),
     Mutant("published-reaches-farther", "the published query tests leaves with a twentieth of a radius more",
            [("src/ist/query/reference/reference_query.cpp", "    leaf_ = {pad, pad, pad};\n",

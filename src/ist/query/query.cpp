@@ -133,13 +133,13 @@ QueryResult Query::contacts(const Eigen::Isometry3d& pose, ContactManifold& mani
 
   const SearchPose from = s.to_float(*bodies);
   ContactOutput sink(s.plan, s.kernels, from, reducer.adder(), reducer.leaf_sums());
-  // Only the end of a budget needs a bound: the upper one, because a pair of nodes is left.
+  // Only the end of a budget needs a bound: the upper one, because pairs of nodes are left.
   const Measured measured = budget.is_limited() ? Measured::kUpper : Measured::kNothing;
-  s.search<ContactVisitor>(*bodies, from, budget, measured, sink, result);
+  auto [lower, upper] = s.search<ContactVisitor>(*bodies, from, budget, measured, sink, result);
   sink.flush();
-  auto& [lower, upper] = *result.distance;
   if (result.leaf_pairs > 0) upper = std::min(upper, result.resolution);
   if (result.complete && result.leaf_pairs == 0) lower = std::max(lower, reach);
+  result.distance = {lower, upper};
   reducer.finish(bodies->relative, result.complete);
   return result;
 }

@@ -15,7 +15,7 @@
 namespace ist::detail {
 namespace {
 
-// The most leaf pairs that a stream is given at once.
+// A stream is given at most this number of leaf pairs at once.
 constexpr std::size_t kWindow = 1 << 12;
 
 // Returns the fixed tree of two that can be compared.
@@ -52,6 +52,22 @@ std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const Sp
     bytes += ExactSearch::bytes_for(fixed, moving, options.workers);
   }
   return bytes;
+}
+
+// Narrows the interval of the roots' distance by the tests of a search. Bounds were inflated by the
+// margin, and by pads that cover the rounding of a test.
+DistanceInterval narrowed(const Approach& bodies, const DistanceBounds& bounds, Measured measured,
+                          bool complete) noexcept {
+  auto [lower, upper] = bodies.roots.distance;
+  // If the search is incomplete, surfaces in a pair of nodes that was not descended may intersect.
+  if (complete && measured == Measured::kBoth) {
+    lower = std::max(lower, bounds.lower + bodies.margin);
+  }
+  // A complete result is the same without a budget and with one that measures the upper end alone.
+  if (!complete || measured == Measured::kBoth) {
+    upper = std::min(upper, bounds.upper - bodies.margin);
+  }
+  return {lower, upper};
 }
 
 }  // namespace
@@ -132,84 +148,83 @@ QueryResult QueryState::list(const Eigen::Isometry3d& pose, const Budget& budget
   QueryResult result = root_result(bodies->roots);
   result.rotation_error = rotation_error(pose);
   if (!bodies->roots.overlap) return result;
-  search<PairLister>(*bodies, to_float(*bodies), budget,
-                     budget.is_limited() ? Measured::kBoth : Measured::kNothing, sink, result);
-  // Without a limit a search measures nothing; a clearance is known anyway.
-  if (!budget.is_limited() && result.found != Found::kClear) result.distance.reset();
+  const DistanceInterval distance =
+      search<PairLister>(*bodies, to_float(*bodies), budget,
+                         budget.is_limited() ? Measured::kBoth : Measured::kNothing, sink, result);
+  // Without a limit a search measures nothing. A clearance is known anyway.
+  const bool tells = budget.is_limited() || result.found == Found::kClear;
+  result.distance = tells ? std::optional(distance) : std::nullopt;
   return result;
 }
 
 template <class Lister>
-void QueryState::search(const Approach& bodies, const SearchPose& pose, const Budget& budget,
-                        Measured measured, typename Lister::Sink& sink,
-                        QueryResult& result) noexcept {
+DistanceInterval QueryState::search(const Approach& bodies, const SearchPose& pose,
+                                    const Budget& budget, Measured measured,
+                                    typename Lister::Sink& sink, QueryResult& result) noexcept {
   set_pad(2 * pad_of(pose) - bodies.margin, result);
-  std::uint64_t made = 0;  // tests for a front
-  if (coherent && !budget.has_tests()) {
-    const CoherentSearch::FrontAt found = coherent->find(bodies.relative, bodies.margin, budget);
-    if (found.front != nullptr) {
-      answer_from(found, bodies, pose, budget, sink, result);
-      return;
-    }
-    made = found.tests;
-  }
-  // The test of the roots is one of the budget's.
+  const bool keeps = coherent && !budget.has_tests();
+  CoherentSearch::FrontAt found;
+  if (keeps) found = coherent->find(bodies.relative, bodies.margin, budget);
+  if (found.front != nullptr) return answer_from(found, bodies, pose, budget, sink, result);
+
+  // The test of the roots counts against a limit of tests.
   const BudgetMeter meter(budget, budget.has_tests() ? result.sphere_tests : 0);
-  SharedSearch::End end{};
-  if (auto* shared = std::get_if<SharedSearch>(&searches)) {
-    end = shared->run<Lister>(pose, sink, meter, measured);
-  } else {
-    Lister lister(pose, sink, meter, measured);
-    const std::size_t steps = serial().run(lister);
-    end = {steps, lister.tests(), sink.count(), lister.bounds()};
-  }
-  result.sphere_tests += end.tests - meter.spent() + made;
+  const SharedSearch::End end = search_afresh<Lister>(pose, meter, measured, sink);
+  result.sphere_tests += end.tests - meter.spent() + found.tests;
   result.leaf_pairs = end.leaf_pairs;
   result.truncated = sink.truncated();
   result.level = static_cast<int>(plan.steps().size() - end.steps);
   result.complete = result.level == 0;
-  // Bounds are inflated by their pads, which cover the rounding of a test, and by the margin.
-  // Surfaces in a pair of nodes that was not descended may intersect.
-  auto& [lower, upper] = *result.distance;
-  if (result.complete && measured == Measured::kBoth) {
-    lower = std::max(lower, end.bounds.lower + bodies.margin);
-  }
-  // A complete result is the same with a budget that measures the upper end alone, and without.
-  if (!result.complete || measured == Measured::kBoth) {
-    upper = std::min(upper, end.bounds.upper - bodies.margin);
-  }
-  if (coherent && result.complete && !budget.has_tests()) {
+  if (keeps && result.complete) {
     coherent->prepare(bodies.relative, bodies.margin, result.leaf_pairs, end.tests, budget);
   }
+  return narrowed(bodies, end.bounds, measured, result.complete);
+}
+
+template <class Lister>
+SharedSearch::End QueryState::search_afresh(const SearchPose& pose, const BudgetMeter& meter,
+                                            Measured measured,
+                                            typename Lister::Sink& sink) noexcept {
+  if (auto* shared = std::get_if<SharedSearch>(&searches)) {
+    return shared->run<Lister>(pose, sink, meter, measured);
+  }
+  Lister lister(pose, sink, meter, measured);
+  const std::size_t steps = serial().run(lister);
+  return {steps, lister.tests(), sink.count(), lister.bounds()};
 }
 
 template <class Sink>
-void QueryState::answer_from(const CoherentSearch::FrontAt& found, const Approach& bodies,
-                             const SearchPose& pose, const Budget& budget, Sink& sink,
-                             QueryResult& result) noexcept {
+DistanceInterval QueryState::answer_from(const CoherentSearch::FrontAt& found,
+                                         const Approach& bodies, const SearchPose& pose,
+                                         const Budget& budget, Sink& sink,
+                                         QueryResult& result) noexcept {
   const Front& front = *found.front;
   result.found = found.tests > 0 ? Found::kFresh : front.empty() ? Found::kClear : Found::kKept;
   result.sphere_tests += found.tests + front.lanes.pair_count;
   result.complete = coherent->pass_on(front, pose, budget, sink);
   if (!result.complete) {
-    if (!sink.stopped()) sink.clear();  // which pairs were passed on is not repeatable
+    if (!sink.stopped()) sink.clear();  // the pairs that were passed on are not repeatable
     result.level = static_cast<int>(plan.steps().size());
   }
   result.leaf_pairs = sink.count();
   result.truncated = sink.truncated();
-  auto& [lower, upper] = *result.distance;
+  auto [lower, upper] = bodies.roots.distance;
   if (result.leaf_pairs > 0) upper = std::min(upper, result.resolution);
   if (front.empty()) {
     lower = std::max(lower, front.extent - found.motion);
     upper = std::min(upper, found.upper);
   }
-  if (!result.complete) return;
-  coherent->prepare(bodies.relative, bodies.margin, result.leaf_pairs, found.tests, budget);
+  if (result.complete) {
+    coherent->prepare(bodies.relative, bodies.margin, result.leaf_pairs, found.tests, budget);
+  }
+  return {lower, upper};
 }
 
-template void QueryState::search<PairLister>(const Approach&, const SearchPose&, const Budget&,
-                                             Measured, LeafPairSink&, QueryResult&) noexcept;
-template void QueryState::search<ContactVisitor>(const Approach&, const SearchPose&, const Budget&,
-                                                 Measured, ContactOutput&, QueryResult&) noexcept;
+template DistanceInterval QueryState::search<PairLister>(const Approach&, const SearchPose&,
+                                                         const Budget&, Measured, LeafPairSink&,
+                                                         QueryResult&) noexcept;
+template DistanceInterval QueryState::search<ContactVisitor>(const Approach&, const SearchPose&,
+                                                             const Budget&, Measured,
+                                                             ContactOutput&, QueryResult&) noexcept;
 
 }  // namespace ist::detail

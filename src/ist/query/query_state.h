@@ -24,7 +24,7 @@ struct Approach {
   double margin;  ///< added to the radius sum of every test
 };
 
-/// Returns the result at a pose that is no rigid motion.
+/// Returns the result for a pose that is no rigid motion.
 [[nodiscard]] inline QueryResult invalid_pose(const Eigen::Isometry3d& pose) noexcept {
   return {.status = QueryStatus::kInvalidPose,
           .complete = false,
@@ -36,45 +36,52 @@ struct QueryState {
   QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tree,
              const QueryOptions& options, const ScopedFloatEnvironment& environment);
 
-  /// Returns the bytes that the memory of a query takes. Throws as the constructor.
+  /// Returns the bytes that the memory of a query takes. Throws the same errors as the constructor.
   [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed, const SphereTree& moving,
                                              const QueryOptions& options);
-  /// Returns the bounds of a query of two trees.
+  /// Returns the policy of a query of two trees.
   [[nodiscard]] static SpherePolicy policy_of(const SphereTree& fixed, const SphereTree& moving,
                                               const QueryOptions& options) noexcept {
     return options.policy.value_or(std::min(fixed.tightest(), moving.tightest()));
   }
 
-  /// Composes the relative pose and tests the roots. Returns nothing where `pose` is no rigid
-  /// motion.
+  /// Composes the relative pose and tests the roots. Returns nothing if `pose` is no rigid motion.
   [[nodiscard]] std::optional<Approach> approach(const Eigen::Isometry3d& pose,
                                                  double margin = 0) const noexcept;
-  /// Returns the rounding error of a triangle that is moved in double, mesh units; 0 where a tree
-  /// has no triangles.
+  /// Returns the rounding error of a triangle that is moved in double, mesh units; 0 if a tree has
+  /// no triangles.
   [[nodiscard]] double triangle_error(const Eigen::Isometry3d& pose) const noexcept;
   [[nodiscard]] SearchPose to_float(const Approach& approach, double margin = 0) const noexcept;
   /// Returns the pad of leaves that a leaf pair may need, mesh units.
   [[nodiscard]] double pad_of(const SearchPose& pose) const noexcept;
   /// Returns the search of the calling thread alone.
   [[nodiscard]] Search& serial() noexcept;
-  /// Searches two bodies whose roots overlap, with all workers, as a Lister does (SharedSearch),
-  /// and completes `result`.
+  /// Passes the leaf pairs of two bodies whose roots overlap to a Lister's sink: from a front, or
+  /// by a fresh search. Completes `result` but for its distance, and returns the interval of that.
   template <class Lister>
-  void search(const Approach& bodies, const SearchPose& pose, const Budget& budget,
-              Measured measured, typename Lister::Sink& sink, QueryResult& result) noexcept;
+  [[nodiscard]] DistanceInterval search(const Approach& bodies, const SearchPose& pose,
+                                        const Budget& budget, Measured measured,
+                                        typename Lister::Sink& sink, QueryResult& result) noexcept;
+  /// Searches from the roots with all workers.
+  template <class Lister>
+  [[nodiscard]] SharedSearch::End search_afresh(const SearchPose& pose, const BudgetMeter& meter,
+                                                Measured measured,
+                                                typename Lister::Sink& sink) noexcept;
   /// Lists all leaf pairs at a pose.
   [[nodiscard]] QueryResult list(const Eigen::Isometry3d& pose, const Budget& budget,
                                  LeafPairSink& sink) noexcept;
   /// Returns the result that the root test alone gives.
   [[nodiscard]] QueryResult root_result(const RootTest& roots, double margin = 0) const noexcept;
-  /// Answers from a front, and goes on with the next one.
+  /// Passes on the leaf pairs of a front, and goes on with the next one. Returns the interval of
+  /// the distance.
   template <class Sink>
-  void answer_from(const CoherentSearch::FrontAt& found, const Approach& bodies,
-                   const SearchPose& pose, const Budget& budget, Sink& sink,
-                   QueryResult& result) noexcept;
+  [[nodiscard]] DistanceInterval answer_from(const CoherentSearch::FrontAt& found,
+                                             const Approach& bodies, const SearchPose& pose,
+                                             const Budget& budget, Sink& sink,
+                                             QueryResult& result) noexcept;
   void set_pad(double pad, QueryResult& result) const noexcept;
-  /// Narrow the interval of `result` to a width of `tolerance`, as far as triangles or leaves can,
-  /// and the budget allows.
+  /// Narrow the interval of `result` to a width of `tolerance` by triangles or by leaves. They stop
+  /// earlier at the end of the budget, or if rounding allows no more.
   void nearest_triangles(const Eigen::Isometry3d& pose, const Approach& bodies, double tolerance,
                          const Budget& budget, DistanceResult& result) noexcept;
   void nearest_leaves(const Approach& bodies, double tolerance, const Budget& budget,
