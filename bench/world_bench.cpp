@@ -95,8 +95,9 @@ const std::array kQuestions = {
     Question{"contacts",
              [](FourBodies& four) {
                std::uint64_t found = 0;
-               for (const auto& pair : four.world->contacts().pairs)
-                 found += pair.result.leaf_pairs;
+               for (const auto& pair : four.world->ask({WorldQuestion::kContacts}).pairs) {
+                 found += pair.found;
+               }
                return found;
              },
              [](FourBodies& four) {
@@ -107,8 +108,8 @@ const std::array kQuestions = {
     Question{"intersects",
              [](FourBodies& four) {
                std::uint64_t found = 0;
-               for (const auto& pair : four.world->intersects().pairs) {
-                 found += pair.result.answer == Answer::kYes ? 1 : 0;
+               for (const auto& pair : four.world->ask({WorldQuestion::kIntersects}).pairs) {
+                 found += pair.answer == Answer::kYes ? 1 : 0;
                }
                return found;
              },
@@ -186,7 +187,7 @@ void measure_grid(benchmark::State& state, int count, double step, int moved) {
       world.set_pose(static_cast<BodyIndex>(i),
                      at(step * Eigen::Vector3d(i % 5, i / 5 % 5, i / 25 + 0.001 * (tick % 2))));
     }
-    near += world.intersects().near_pairs;
+    near += world.ask({WorldQuestion::kIntersects}).near_pairs;
   }
   state.counters["bodies"] = count;
   state.counters["moved"] = moved;

@@ -12,8 +12,8 @@ Eigen::Isometry3d at(double x, double y, double z) {
 
 // The answer lists the pairs that are near each other. All other pairs are apart.
 void print_pairs_that_touch(ist::World& world) {
-  for (const ist::PairIntersection& pair : world.intersects().pairs) {
-    if (pair.result.answer != ist::Answer::kYes) continue;
+  for (const ist::PairAnswer& pair : world.ask({ist::WorldQuestion::kIntersects}).pairs) {
+    if (pair.answer != ist::Answer::kYes) continue;
     std::printf("  %s and %s touch\n", world.name(pair.bodies.a).data(),
                 world.name(pair.bodies.b).data());
   }

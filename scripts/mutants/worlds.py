@@ -31,11 +31,11 @@ MUTANTS = [
            [(WORLD + "world_answers.cpp", "BudgetMeter(budget, all.sphere_tests).rest()", "budget")],
            ["world_test WorldBudget.*"]),
     Mutant("late-pairs-asked", "pairs are asked after the deadline too",
-           [(WORLD + "world_answers.cpp", "at.near.status != QueryStatus::kDone || budget.is_past()",
-             "at.near.status != QueryStatus::kDone")], ["world_test WorldBudget.*"]),
+           [(WORLD + "world_answers.cpp", "at.status != QueryStatus::kDone || budget.is_past()",
+             "at.status != QueryStatus::kDone")], ["world_test WorldBudget.*"]),
     Mutant("unprepared-pairs-forgotten", "pairs without a query do not count in the least distance",
-           [(WORLD + "world_distance.cpp", "    lower = std::min(lower, pair.result.distance.lower);\n",
-             "    if (pair.status != QueryStatus::kDone) continue;\n    lower = std::min(lower, pair.result.distance.lower);\n")],
+           [(WORLD + "world_answers.cpp", "    lower = std::min(lower, pair.distance.lower);\n",
+             "    if (pair.status != QueryStatus::kDone) continue;\n    lower = std::min(lower, pair.distance.lower);\n")],
            ["world_test WorldDistance.*"]),
     Mutant("pairs-without-room-forgotten", "pairs that the room did not hold do not count in the least distance",
            [(WORLD + "world_state.cpp", "  return rest;\n", "  return rest < 0 ? rest : kLargestDistance;\n")],
@@ -58,6 +58,9 @@ MUTANTS = [
              "void NearSet::clear() noexcept {\n  pairs_.clear();\n  pairs_.shrink_to_fit();\n  pairs_.reserve(room_);\n")],
            ["quiet_test Allocations.AWorldMakesNone"]),
     Mutant("least-distance-as-the-caller-rounds", "the least distance of a world is computed in the caller's arithmetic",
-           [(WORLD + "world_distance.cpp", "  const ScopedFloatEnvironment environment;\n", "")],
+           [(WORLD + "world_answers.cpp", "Budget& budget) noexcept {\n  const ScopedFloatEnvironment environment;\n  WorldState& s = *state_;\n"
+             "  const WorldUse use(s);\n  if (!use) return {.status = QueryStatus::kBusy};\n",
+             "Budget& budget) noexcept {\n  WorldState& s = *state_;\n"
+             "  const WorldUse use(s);\n  if (!use) return {.status = QueryStatus::kBusy};\n")],
            ["stability_test *FloatEnvironmentOfAWorld*"]),
 ]

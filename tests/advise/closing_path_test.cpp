@@ -110,7 +110,7 @@ TEST(ClosingPath, OpensABodyInsideTheOther) {
   ASSERT_TRUE(path);
   expect_is_touch(pair, *path);
   EXPECT_GT(path->first_contact, 2.2);
-  EXPECT_LE(path->first_contact, 2.5);
+  EXPECT_LE(path->first_contact, 2.5 + 1e-6);
   EXPECT_EQ(path->end, 0);
 }
 

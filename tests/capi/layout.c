@@ -328,6 +328,16 @@ AT(ist_world_result, sphere_tests, 24);
 AT(ist_world_result, complete, 32);
 AT(ist_world_result, truncated, 36);
 
+SIZE(ist_world_question, 56);
+AT(ist_world_question, struct_size, 0);
+AT(ist_world_question, ask, 8);
+AT(ist_world_question, reserved, 12);
+AT(ist_world_question, tolerance, 16);
+AT(ist_world_question, leaf_pairs, 24);
+AT(ist_world_question, leaf_capacity, 32);
+AT(ist_world_question, triangles, 40);
+AT(ist_world_question, triangle_capacity, 48);
+
 SIZE(ist_least_distance, 56);
 AT(ist_least_distance, struct_size, 0);
 AT(ist_least_distance, lower, 8);
@@ -340,11 +350,13 @@ AT(ist_least_distance, a, 44);
 AT(ist_least_distance, b, 48);
 AT(ist_least_distance, reserved, 52);
 
+IS(IST_ASK_NEAR, 0);
 IS(IST_ASK_INTERSECTS, 1);
 IS(IST_ASK_LEAF_PAIRS, 2);
 IS(IST_ASK_DISTANCE, 4);
 IS(IST_ASK_CONTACTS, 8);
 IS(IST_ASK_PENETRATION, 16);
+IS(IST_ASK_TRIANGLE_PAIRS, 32);
 IS(IST_JAW_LOWER, 0);
 IS(IST_JAW_UPPER, 1);
 

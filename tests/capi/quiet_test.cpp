@@ -77,19 +77,22 @@ void ask_world(Bodies& bodies, const double* at, bool bad, const ist_budget* lim
   ist_world* world = bodies.world;
   seen.status(ist_world_set_pose(world, 1, at), bad ? IST_POSE_INVALID : IST_OK);
   seen.status(ist_world_get_pose(world, 0, 1, pose), bad ? IST_POSE_INVALID : IST_OK);
-  seen.status(ist_world_near_pairs(world, pairs, 4, &result), IST_OK);
-  seen.status(ist_world_intersects(world, limits, pairs, 4, &result), IST_OK);
-  seen.status(ist_world_contacts(world, nullptr, pairs, 4, &result), IST_OK);
+  auto question = sized<ist_world_question>();
+  question.tolerance = 0.01;
+  question.leaf_pairs = bodies.leaf_pairs.data();
+  question.leaf_capacity = bodies.leaf_pairs.size();
+  question.triangles = bodies.triangle_pairs.data();
+  question.triangle_capacity = bodies.triangle_pairs.size();
+  for (const int ask : {IST_ASK_NEAR, IST_ASK_INTERSECTS, IST_ASK_LEAF_PAIRS, IST_ASK_DISTANCE,
+                        IST_ASK_TRIANGLE_PAIRS}) {
+    question.ask = ask;
+    seen.status(ist_world_ask(world, &question, limits, pairs, 4, &result), IST_OK);
+  }
+  question.ask = IST_ASK_CONTACTS;
+  seen.status(ist_world_ask(world, &question, nullptr, pairs, 4, &result), IST_OK);
   seen.status(ist_world_get_contacts(world, 0, 1, bodies.contacts.data(), 32, &sums, &count),
               bad ? IST_NOT_PREPARED : IST_OK);
   seen.contacts += count;
-  seen.status(ist_world_leaf_pairs(world, limits, bodies.leaf_pairs.data(),
-                                   bodies.leaf_pairs.size(), pairs, 4, &result),
-              IST_OK);
-  seen.status(ist_world_triangle_pairs(world, limits, bodies.triangle_pairs.data(),
-                                       bodies.triangle_pairs.size(), pairs, 4, &result),
-              IST_OK);
-  seen.status(ist_world_distances(world, 0.01, limits, pairs, 4, &result), IST_OK);
   seen.status(ist_world_distance(world, 0.01, limits, &least), IST_OK);
   seen.status(ist_world_set_pose(world, 7, at), IST_ARGUMENT_INVALID);
   seen.status(ist_world_forget(world), IST_OK);

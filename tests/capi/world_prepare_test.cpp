@@ -41,8 +41,13 @@ class CWorldPrepare : public ::testing::Test {
     EXPECT_EQ(name(ist_world_get_info(world_, &info)), "ok");
     return info.bytes;
   }
+  ist_status ask(std::int32_t what, const ist_budget* budget) {
+    auto question = sized<ist_world_question>();
+    question.ask = what;
+    return ist_world_ask(world_, &question, budget, pairs_.data(), kPairRoom, &result_);
+  }
   void ask_contacts(const ist_budget* budget) {
-    ASSERT_EQ(name(ist_world_contacts(world_, budget, pairs_.data(), kPairRoom, &result_)), "ok");
+    ASSERT_EQ(name(ask(IST_ASK_CONTACTS, budget)), "ok");
     ASSERT_EQ(result_.written, kBodies - 1);
   }
   // The contacts of the first two bodies.
@@ -83,8 +88,7 @@ TEST_F(CWorldPrepare, IsFollowedAndEndsWhereTheCallerSaysSo) {
     EXPECT_EQ(name(get_contacts()), "ok");
     EXPECT_EQ(count_, contacts);
     EXPECT_EQ(std::memcmp(&sums_, &sums, sizeof sums), 0);
-    ASSERT_EQ(name(ist_world_intersects(world_, nullptr, pairs_.data(), kPairRoom, &result_)),
-              "ok");
+    ASSERT_EQ(name(ask(IST_ASK_INTERSECTS, nullptr)), "ok");
     EXPECT_EQ(pairs_[0].status, IST_OK);
     EXPECT_EQ(pairs_[1].status, IST_NOT_PREPARED);
   }

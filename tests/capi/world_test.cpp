@@ -63,17 +63,24 @@ class CWorld : public ::testing::Test {
     EXPECT_EQ(name(ist_world_free(world_)), "ok");
   }
 
+  // Asks with room for all pairs.
+  ist_status ask(std::int32_t what, const ist_budget* budget = nullptr) {
+    question_.ask = what;
+    return ist_world_ask(world_, &question_, budget, pairs_, kRoom, &result_);
+  }
+
   const std::array<double, 16> poses_[4] = {c_shift(0, 0, 0), c_shift(0.5, 0, 0),
                                             c_shift(1.9, 0.5, 1), c_shift(0, 50, 0)};
   const char* const names_[4] = {"ball", "box", "other ball", "plate"};
   ist_tree* tree_ = nullptr;
   ist_world* world_ = nullptr;
   std::optional<World> cpp_;
+  ist_world_question question_ = sized<ist_world_question>();
   ist_world_pair pairs_[kRoom] = {};
   ist_world_result result_ = sized<ist_world_result>();
 };
 
-void expect_same(const ist_world_pair& pair, const NearPair& expected) {
+void expect_same(const ist_world_pair& pair, const PairAnswer& expected) {
   EXPECT_EQ(pair.a, expected.bodies.a);
   EXPECT_EQ(pair.b, expected.bodies.b);
 }
@@ -94,9 +101,9 @@ TEST_F(CWorld, GivesTheAnswersOfCpp) {
   EXPECT_EQ(info.bytes, bytes);
   EXPECT_EQ(info.bodies, 4u);
 
-  const auto found = cpp_->intersects();
+  const auto found = cpp_->ask({WorldQuestion::kIntersects});
   ASSERT_EQ(found.pairs.size(), 3u);
-  ASSERT_EQ(name(ist_world_intersects(world_, nullptr, pairs_, kRoom, &result_)), "ok");
+  ASSERT_EQ(name(ask(IST_ASK_INTERSECTS)), "ok");
   EXPECT_EQ(result_.near_pairs, 3u);
   EXPECT_EQ(result_.written, 3u);
   EXPECT_EQ(result_.sphere_tests, found.sphere_tests);
@@ -104,9 +111,9 @@ TEST_F(CWorld, GivesTheAnswersOfCpp) {
   for (std::size_t k = 0; k < 3; ++k) {
     expect_same(pairs_[k], found.pairs[k]);
     EXPECT_EQ(pairs_[k].status, IST_OK);
-    EXPECT_EQ(pairs_[k].answer, static_cast<int>(found.pairs[k].result.answer));
+    EXPECT_EQ(pairs_[k].answer, static_cast<int>(found.pairs[k].answer));
     EXPECT_EQ(pairs_[k].distance_upper, found.pairs[k].roots.upper);
-    EXPECT_EQ(pairs_[k].rotation_error, found.pairs[k].result.rotation_error);
+    EXPECT_EQ(pairs_[k].rotation_error, found.pairs[k].rotation_error);
   }
   EXPECT_EQ(pairs_[0].rotation_error, rotation_error(isometry(rough)));
   EXPECT_GT(pairs_[0].rotation_error, 1e-4);
@@ -115,16 +122,16 @@ TEST_F(CWorld, GivesTheAnswersOfCpp) {
 
   std::vector<ist_leaf_pair> leaves(1 << 12);
   std::vector<LeafPair> expected(1 << 12);
-  const auto listed = cpp_->leaf_pairs(expected);
-  ASSERT_EQ(name(ist_world_leaf_pairs(world_, nullptr, leaves.data(), leaves.size(), pairs_, kRoom,
-                                      &result_)),
-            "ok");
+  const auto listed = cpp_->ask({.kind = WorldQuestion::kLeafPairs, .leaf_pairs = expected});
+  question_.leaf_pairs = leaves.data();
+  question_.leaf_capacity = leaves.size();
+  ASSERT_EQ(name(ask(IST_ASK_LEAF_PAIRS)), "ok");
   std::uint64_t first = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_EQ(pairs_[k].found, listed.pairs[k].result.leaf_pairs);
+    EXPECT_EQ(pairs_[k].found, listed.pairs[k].found);
     EXPECT_EQ(pairs_[k].written, pairs_[k].found);
     EXPECT_EQ(pairs_[k].first, first);
-    EXPECT_EQ(pairs_[k].resolution, listed.pairs[k].result.resolution);
+    EXPECT_EQ(pairs_[k].resolution, listed.pairs[k].resolution);
     first += pairs_[k].written;
   }
   ASSERT_GT(first, 10u);
@@ -132,21 +139,22 @@ TEST_F(CWorld, GivesTheAnswersOfCpp) {
 
   std::vector<ist_triangle_pair> triangles(1 << 12);
   std::vector<TrianglePair> meeting(1 << 12);
-  const auto met = cpp_->triangle_pairs(meeting);
-  ASSERT_EQ(name(ist_world_triangle_pairs(world_, nullptr, triangles.data(), triangles.size(),
-                                          pairs_, kRoom, &result_)),
-            "ok");
+  const auto met = cpp_->ask({.kind = WorldQuestion::kTrianglePairs, .triangle_pairs = meeting});
+  question_.triangles = triangles.data();
+  question_.triangle_capacity = triangles.size();
+  ASSERT_EQ(name(ask(IST_ASK_TRIANGLE_PAIRS)), "ok");
   ASSERT_GT(pairs_[0].written, 10u);
-  EXPECT_EQ(pairs_[0].found, met.pairs[0].result.triangle_pairs);
+  EXPECT_EQ(pairs_[0].found, met.pairs[0].found);
   EXPECT_EQ(std::memcmp(triangles.data(), meeting.data(), pairs_[0].found * sizeof(TrianglePair)),
             0);
 
-  const auto apart = cpp_->distances(0.01);
-  ASSERT_EQ(name(ist_world_distances(world_, 0.01, nullptr, pairs_, kRoom, &result_)), "ok");
+  const auto apart = cpp_->ask({WorldQuestion::kDistance, 0.01});
+  question_.tolerance = 0.01;
+  ASSERT_EQ(name(ask(IST_ASK_DISTANCE)), "ok");
   for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_EQ(pairs_[k].distance_lower, apart.pairs[k].result.distance.lower);
-    EXPECT_EQ(pairs_[k].distance_upper, apart.pairs[k].result.distance.upper);
-    EXPECT_EQ(pairs_[k].narrowest, apart.pairs[k].result.narrowest);
+    EXPECT_EQ(pairs_[k].distance_lower, apart.pairs[k].distance.lower);
+    EXPECT_EQ(pairs_[k].distance_upper, apart.pairs[k].distance.upper);
+    EXPECT_EQ(pairs_[k].narrowest, apart.pairs[k].narrowest);
     EXPECT_EQ(pairs_[k].complete, 1);
   }
 
@@ -166,12 +174,12 @@ TEST_F(CWorld, GivesTheAnswersOfCpp) {
 TEST_F(CWorld, GivesTheContactsOfCpp) {
   ASSERT_EQ(name(ist_world_prepare(world_, nullptr, 0)), "ok");
   cpp_->prepare();
-  const auto felt = cpp_->contacts();
+  const auto felt = cpp_->ask({WorldQuestion::kContacts});
   std::uint64_t count = 0;
   EXPECT_EQ(name(ist_world_get_contacts(world_, 0, 1, nullptr, 0, nullptr, &count)),
             "not-prepared");  // nobody asked
-  ASSERT_EQ(name(ist_world_contacts(world_, nullptr, pairs_, kRoom, &result_)), "ok");
-  EXPECT_EQ(pairs_[0].found, felt.pairs[0].result.leaf_pairs);
+  ASSERT_EQ(name(ask(IST_ASK_CONTACTS)), "ok");
+  EXPECT_EQ(pairs_[0].found, felt.pairs[0].found);
   EXPECT_EQ(pairs_[0].contacts, felt.pairs[0].manifold->points().size());
   ist_contact contacts[32];
   auto sums = sized<ist_contact_sums>();
@@ -193,14 +201,14 @@ TEST_F(CWorld, MovesBodiesAndTellsTheirPoses) {
   ASSERT_EQ(name(ist_world_get_pose(world_, 0, 1, pose)), "ok");
   EXPECT_EQ(pose[13], 30);
   EXPECT_EQ(pose[15], 1);
-  ASSERT_EQ(name(ist_world_near_pairs(world_, pairs_, kRoom, &result_)), "ok");
+  ASSERT_EQ(name(ask(IST_ASK_NEAR)), "ok");
   EXPECT_EQ(result_.near_pairs, 1u);
   std::array<double, 16> bad = c_shift(0, 0, 0);
   bad[3] = NAN;
   EXPECT_EQ(name(ist_world_set_pose(world_, 1, bad.data())), "pose-invalid");
   EXPECT_EQ(name(ist_world_get_pose(world_, 0, 1, pose)), "pose-invalid");
   EXPECT_EQ(pose[15], 0);
-  ASSERT_EQ(name(ist_world_intersects(world_, nullptr, pairs_, kRoom, &result_)), "ok");
+  ASSERT_EQ(name(ask(IST_ASK_INTERSECTS)), "ok");
   ASSERT_EQ(result_.written, 4u);
   EXPECT_EQ(result_.complete, 0);
   for (std::uint64_t k = 0; k < 4; ++k) {
@@ -221,21 +229,22 @@ TEST_F(CWorld, PreparesSomePairs) {
   ASSERT_EQ(name(ist_world_bytes_needed(world_, some, 1, &one)), "ok");
   ASSERT_EQ(name(ist_world_bytes_needed(world_, nullptr, 0, &all)), "ok");
   EXPECT_LT(one, all);
-  EXPECT_EQ(name(ist_world_intersects(world_, nullptr, pairs_, kRoom, &result_)), "not-prepared");
+  EXPECT_EQ(name(ask(IST_ASK_INTERSECTS)), "not-prepared");
   ASSERT_EQ(name(ist_world_prepare(world_, some, 1)), "ok");
   EXPECT_EQ(name(ist_world_ignore(world_, 2, 0)), "ok");
+  question_.ask = IST_ASK_INTERSECTS;
   auto budget = sized<ist_budget>();
   budget.tests = 1'000'000;
-  ASSERT_EQ(name(ist_world_intersects(world_, &budget, pairs_, 1, &result_)), "ok");
+  ASSERT_EQ(name(ist_world_ask(world_, &question_, &budget, pairs_, 1, &result_)), "ok");
   EXPECT_EQ(result_.near_pairs, 2u);
   EXPECT_EQ(result_.written, 1u);
   EXPECT_EQ(result_.truncated, 1);
-  ASSERT_EQ(name(ist_world_intersects(world_, &budget, pairs_, kRoom, &result_)), "ok");
+  ASSERT_EQ(name(ask(IST_ASK_INTERSECTS, &budget)), "ok");
   EXPECT_EQ(pairs_[0].status, IST_OK);
   EXPECT_EQ(pairs_[1].status, IST_NOT_PREPARED);
   // Some pairs, of which there are none: only the room for answers.
   ASSERT_EQ(name(ist_world_prepare(world_, some, 0)), "ok");
-  ASSERT_EQ(name(ist_world_intersects(world_, nullptr, pairs_, kRoom, &result_)), "ok");
+  ASSERT_EQ(name(ask(IST_ASK_INTERSECTS)), "ok");
   EXPECT_EQ(pairs_[0].status, IST_NOT_PREPARED);
 }
 
@@ -265,8 +274,19 @@ TEST_F(CWorld, TellsWhatIsMisused) {
   expect(ist_world_set_pose(world_, 4, c_shift(0, 0, 0).data()), "argument-invalid", "number");
   double pose[16];
   expect(ist_world_get_pose(world_, 4, 0, pose), "argument-invalid", "number");
-  expect(ist_world_distances(world_, -1, nullptr, pairs_, kRoom, &result_), "argument-invalid",
-         "tolerance");
+  question_.tolerance = -1;
+  expect(ask(IST_ASK_DISTANCE), "argument-invalid", "question->tolerance is -1");
+  question_.tolerance = 0;
+  for (const std::int32_t what : {-1, 3, int{IST_ASK_PENETRATION}, 64}) {
+    expect(ask(what), "argument-invalid", "question->ask");
+  }
+  question_.leaf_capacity = 1;
+  expect(ask(IST_ASK_LEAF_PAIRS), "null-argument", "question->leaf_pairs is NULL");
+  question_.leaf_capacity = 0;
+  question_.triangle_capacity = 1;
+  expect(ask(IST_ASK_TRIANGLE_PAIRS), "null-argument", "question->triangles is NULL");
+  question_.struct_size = 9;
+  expect(ask(IST_ASK_NEAR), "struct-size", "question->struct_size");
   options = sized<ist_world_options>();
   options.max_memory = 1'000'000;
   ASSERT_EQ(name(ist_world_create(&options, &none)), "ok");
@@ -301,14 +321,11 @@ TEST_F(CWorld, TellsOfPointersAndHandles) {
   is_null("info", ist_world_get_info(world_, nullptr));
   is_null("pose", ist_world_set_pose(world_, 0, nullptr));
   is_null("pose", ist_world_get_pose(world_, 0, 1, nullptr));
-  is_null("pairs", ist_world_near_pairs(world_, nullptr, 1, &result_));
-  is_null("result", ist_world_near_pairs(world_, pairs_, kRoom, nullptr));
-  is_null("result", ist_world_intersects(world_, nullptr, pairs_, kRoom, nullptr));
-  is_null("result", ist_world_contacts(world_, nullptr, pairs_, kRoom, nullptr));
+  is_null("question", ist_world_ask(world_, nullptr, nullptr, pairs_, kRoom, &result_));
+  is_null("pairs", ist_world_ask(world_, &question_, nullptr, nullptr, 1, &result_));
+  is_null("result", ist_world_ask(world_, &question_, nullptr, pairs_, kRoom, nullptr));
   is_null("count", ist_world_get_contacts(world_, 0, 1, nullptr, 0, nullptr, nullptr));
   is_null("contacts", ist_world_get_contacts(world_, 0, 1, nullptr, 1, nullptr, &bytes));
-  is_null("leaf_pairs", ist_world_leaf_pairs(world_, nullptr, nullptr, 1, pairs_, 1, &result_));
-  is_null("triangles", ist_world_triangle_pairs(world_, nullptr, nullptr, 1, pairs_, 1, &result_));
   is_null("result", ist_world_distance(world_, 1, nullptr, nullptr));
 
   const std::vector<std::function<ist_status(ist_world*)>> takers = {
@@ -320,17 +337,8 @@ TEST_F(CWorld, TellsOfPointersAndHandles) {
       [&](ist_world* w) { return ist_world_get_info(w, &info); },
       [&](ist_world* w) { return ist_world_set_pose(w, 0, poses_[0].data()); },
       [&](ist_world* w) { return ist_world_get_pose(w, 0, 1, pose); },
-      [&](ist_world* w) { return ist_world_near_pairs(w, pairs_, kRoom, &result_); },
-      [&](ist_world* w) { return ist_world_intersects(w, nullptr, pairs_, kRoom, &result_); },
-      [&](ist_world* w) { return ist_world_contacts(w, nullptr, pairs_, kRoom, &result_); },
+      [&](ist_world* w) { return ist_world_ask(w, &question_, nullptr, pairs_, kRoom, &result_); },
       [&](ist_world* w) { return ist_world_get_contacts(w, 0, 1, nullptr, 0, nullptr, &bytes); },
-      [&](ist_world* w) {
-        return ist_world_leaf_pairs(w, nullptr, nullptr, 0, pairs_, kRoom, &result_);
-      },
-      [&](ist_world* w) {
-        return ist_world_triangle_pairs(w, nullptr, nullptr, 0, pairs_, kRoom, &result_);
-      },
-      [&](ist_world* w) { return ist_world_distances(w, 1, nullptr, pairs_, kRoom, &result_); },
       [&](ist_world* w) { return ist_world_distance(w, 1, nullptr, &least); },
       [&](ist_world* w) { return ist_world_forget(w); },
   };

@@ -35,7 +35,8 @@ world = ist.World(reach=0.5)
 body: int = world.add(tree, np.eye(4), name="jaw")
 world.prepare([(0, body)], progress=lambda part: None)
 found = world.leaf_pairs(out=np.empty(4, ist.WORLD_PAIR))
-of_first = found.leaf_pairs_of(found.pairs[0])
+of_first = found.found_of(found.pairs[0])
+touching: bool = world.ask("intersects", tests=100).complete
 least: Optional[float] = world.distance(0.1).upper
 sweep = ist.Sweep("job.toml", pathlib.Path("out"), progress=lambda part: None)
 outcomes = [sweep.run(part, threads=2).outcome for part in sweep.parts]

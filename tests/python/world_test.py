@@ -42,8 +42,8 @@ class Worlds(Refusals):
             np.testing.assert_allclose(pose, expected, atol=1e-12)
             self.assertEqual(row["status"], 0)
             self.assertEqual({ist.YES: True, ist.NO: False, ist.NEAR: None}[row["answer"]], query.intersects(pose))
-            self.assertEqual(leaves.leaf_pairs_of(leaves.pairs[k]).tolist(), query.leaf_pairs(pose).pairs.tolist())
-            self.assertEqual(met.triangle_pairs_of(met.pairs[k]).tolist(), query.triangle_pairs(pose).pairs.tolist())
+            self.assertEqual(leaves.found_of(leaves.pairs[k]).tolist(), query.leaf_pairs(pose).pairs.tolist())
+            self.assertEqual(met.found_of(met.pairs[k]).tolist(), query.triangle_pairs(pose).pairs.tolist())
             contacts, wanted = self.world.contacts_of(row["b"], row["a"]), query.contacts(pose)
             self.assertEqual(contacts.contacts.tobytes(), wanted.contacts.tobytes())
             self.assertEqual(contacts.sums.tobytes(), wanted.sums.tobytes())
@@ -183,9 +183,11 @@ class Worlds(Refusals):
         refuses(["number"], self.world.set_pose, 8, np.eye(4))
         refuses(["out"], self.world.intersects, out=np.zeros(3))
         refuses(["out"], self.world.leaf_pairs, into=np.zeros(3, ist.CONTACT))
+        refuses(["question", "touches", "intersects"], self.world.ask, "touches")
+        refuses(["into", "distances"], self.world.ask, "distances", into=np.zeros(3, ist.LEAF_PAIR))
         refuses(["tolerance"], self.world.distance, -1)
         refuses(["tolerance"], self.world.distances, np.nan)
-        refuses(["ist_world_contacts"], self.world.contacts_of, 0, 3)
+        refuses(["IST_ASK_CONTACTS"], self.world.contacts_of, 0, 3)
         with self.assertRaises(TypeError):
             self.world.__reduce__()
 

@@ -20,9 +20,8 @@ consteval std::array<std::size_t, 2 * sizeof...(Types)> layout_of() {
 consteval auto public_layout() {
   return layout_of<SphereTree, TriangleMesh, ReferenceQuery, Query, QueryOptions, ContactManifold,
                    Contact, ContactSums, ManifoldOptions, LeafPair, IntersectionResult, QueryResult,
-                   TrianglePairsResult, DistanceResult, Sharing, World, WorldOptions, NearPair,
-                   PairIntersection, PairContacts, PairLeaves, PairTriangles, PairDistance,
-                   WorldAnswer<PairContacts>, WorldDistance>();
+                   TrianglePairsResult, DistanceResult, Sharing, World, WorldOptions, WorldQuestion,
+                   PairAnswer, WorldAnswer, WorldDistance>();
 }
 
 /// As code compiled for AVX-512 does.

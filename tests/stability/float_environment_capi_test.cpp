@@ -295,21 +295,19 @@ TEST_P(FloatEnvironmentOfTheCInterface, ChangesNoWorld) {
         CPose between{};
         fine(ist_world_get_pose(world, 0, 1, between.data()));
         say(between, record);
-        say_all(ist_world_near_pairs(world, pairs.data(), pairs.size(), &result));
-        say_all(ist_world_intersects(world, nullptr, pairs.data(), pairs.size(), &result));
-        say_all(ist_world_contacts(world, nullptr, pairs.data(), pairs.size(), &result));
+        std::vector<ist_leaf_pair> leaves(1 << 14);
+        std::vector<ist_triangle_pair> triangles(1 << 14);
+        for (const int ask : {IST_ASK_NEAR, IST_ASK_INTERSECTS, IST_ASK_CONTACTS,
+                              IST_ASK_LEAF_PAIRS, IST_ASK_TRIANGLE_PAIRS, IST_ASK_DISTANCE}) {
+          const auto question =
+              sized<ist_world_question>({0, ask, 0, tolerance_, leaves.data(), leaves.size(),
+                                         triangles.data(), triangles.size()});
+          say_all(ist_world_ask(world, &question, nullptr, pairs.data(), pairs.size(), &result));
+        }
         auto sums = sized<ist_contact_sums>();
         std::uint64_t contacts = 0;
         fine(ist_world_get_contacts(world, 0, 1, nullptr, 0, &sums, &contacts));
         say(sums, record);
-        std::vector<ist_leaf_pair> leaves(1 << 14);
-        say_all(ist_world_leaf_pairs(world, nullptr, leaves.data(), leaves.size(), pairs.data(),
-                                     pairs.size(), &result));
-        std::vector<ist_triangle_pair> triangles(1 << 14);
-        say_all(ist_world_triangle_pairs(world, nullptr, triangles.data(), triangles.size(),
-                                         pairs.data(), pairs.size(), &result));
-        say_all(
-            ist_world_distances(world, tolerance_, nullptr, pairs.data(), pairs.size(), &result));
         auto least = sized<ist_least_distance>();
         fine(ist_world_distance(world, tolerance_, nullptr, &least));
         say(least, record);

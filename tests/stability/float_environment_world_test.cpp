@@ -47,37 +47,27 @@ class FloatEnvironmentOfAWorld : public FloatEnvironmentOfTheCaller {
     });
   }
 
-  static void say(const NearPair& pair, Record& record) {
+  static void say(const PairAnswer& pair, Record& record) {
     record.add(pair.bodies.a);
     record.add(pair.bodies.b);
     record.add(pair.status);
+    record.add(pair.answer);
+    record.add(pair.complete);
     record.add(pair.roots);
+    record.add(pair.distance);
+    record.add(pair.narrowest);
+    record.add(pair.resolution);
+    record.add(pair.pad);
+    record.add(pair.found);
+    record.add(pair.written);
+    record.add(pair.sphere_tests);
   }
-  static void say(const QueryResult& result, Record& record) {
-    record.add(result.complete);
-    record.add(result.leaf_pairs);
-    record.add(result.sphere_tests);
-    record.add(result.resolution);
-    record.add(result.pad);
-    if (result.distance) record.add(*result.distance);
-  }
-  static void say(const DistanceResult& result, Record& record) {
-    record.add(result.complete);
-    record.add(result.distance);
-    record.add(result.narrowest);
-    record.add(result.sphere_tests);
-  }
-  // Of all pairs that are near, and what `more` adds of each.
-  template <class Pair, class More>
-  static void say(const WorldAnswer<Pair>& answer, Record& record, const More& more) {
+  static void say(const WorldAnswer& answer, Record& record) {
     record.add(answer.status);
     record.add(answer.complete);
     record.add(answer.near_pairs);
     record.add(answer.sphere_tests);
-    for (const Pair& pair : answer.pairs) {
-      say(pair, record);
-      more(pair);
-    }
+    for (const PairAnswer& pair : answer.pairs) say(pair, record);
   }
 
   const SphereTree large_ = tree(meshes_.a), small_ = tree(meshes_.b);
@@ -117,55 +107,53 @@ TEST_P(FloatEnvironmentOfAWorld, ChangesNoMemory) {
 }
 
 TEST_P(FloatEnvironmentOfAWorld, ChangesNoNearPair) {
-  changes_no_world("World::near_pairs", 60, [&](World& world, Record& record) {
-    say(world.near_pairs(), record, [](const NearPair&) {});
+  changes_no_world("World::ask for near pairs", 60, [&](World& world, Record& record) {
+    say(world.ask({}), record);
     record.add(world.set_pose(1, poses_[3]));
-    say(world.near_pairs(), record, [](const NearPair&) {});
+    say(world.ask({}), record);
   });
 }
 
 TEST_P(FloatEnvironmentOfAWorld, ChangesNoIntersection) {
-  changes_no_world("World::intersects", 60, [](World& world, Record& record) {
-    say(world.intersects(), record, [&](const PairIntersection& pair) {
-      record.add(pair.result.answer);
-      record.add(pair.result.sphere_tests);
-    });
+  changes_no_world("World::ask for intersections", 60, [](World& world, Record& record) {
+    say(world.ask({WorldQuestion::kIntersects}), record);
   });
 }
 
 TEST_P(FloatEnvironmentOfAWorld, ChangesNoContact) {
-  changes_no_world("World::contacts", 400, [](World& world, Record& record) {
-    say(world.contacts(), record, [&](const PairContacts& pair) {
-      say(pair.result, record);
+  changes_no_world("World::ask for contacts", 400, [](World& world, Record& record) {
+    const WorldAnswer answer = world.ask({WorldQuestion::kContacts});
+    say(answer, record);
+    for (const PairAnswer& pair : answer.pairs) {
       for (const Contact& contact : pair.manifold->points()) record.add(contact);
       record.add(pair.manifold->sums().spring.torque);
-    });
+    }
   });
 }
 
 TEST_P(FloatEnvironmentOfAWorld, ChangesNoLeafPair) {
-  changes_no_world("World::leaf_pairs", 1000, [](World& world, Record& record) {
+  changes_no_world("World::ask for leaf pairs", 1000, [](World& world, Record& record) {
     std::vector<LeafPair> out(1 << 14);
-    say(world.leaf_pairs(out), record, [&](const PairLeaves& pair) {
-      say(pair.result, record);
-      for (const LeafPair& leaves : pair.pairs) record.add(leaves);
-    });
+    const auto answer = world.ask({.kind = WorldQuestion::kLeafPairs, .leaf_pairs = out});
+    say(answer, record);
+    out.resize(answer.pairs.back().first + answer.pairs.back().written);
+    for (const LeafPair& leaves : out) record.add(leaves);
   });
 }
 
 TEST_P(FloatEnvironmentOfAWorld, ChangesNoTrianglePair) {
-  changes_no_world("World::triangle_pairs", 200, [](World& world, Record& record) {
+  changes_no_world("World::ask for pairs of triangles", 200, [](World& world, Record& record) {
     std::vector<TrianglePair> out(1 << 14);
-    say(world.triangle_pairs(out), record, [&](const PairTriangles& pair) {
-      record.add(pair.result.sphere_tests);
-      for (const TrianglePair& triangles : pair.pairs) record.add(triangles);
-    });
+    const auto answer = world.ask({.kind = WorldQuestion::kTrianglePairs, .triangle_pairs = out});
+    say(answer, record);
+    out.resize(answer.pairs.back().first + answer.pairs.back().written);
+    for (const TrianglePair& triangles : out) record.add(triangles);
   });
 }
 
 TEST_P(FloatEnvironmentOfAWorld, ChangesNoDistance) {
-  changes_no_world("World::distances", 100, [](World& world, Record& record) {
-    say(world.distances(0), record, [&](const PairDistance& pair) { say(pair.result, record); });
+  changes_no_world("World::ask for distances", 100, [](World& world, Record& record) {
+    say(world.ask({WorldQuestion::kDistance, 0}), record);
   });
 }
 
@@ -180,10 +168,7 @@ TEST_P(FloatEnvironmentOfAWorld, ChangesNoLeastDistance) {
       record.add(least.nearest->a);
       record.add(least.nearest->b);
       record.add(least.sphere_tests);
-      for (const PairDistance& pair : least.pairs) {
-        say(pair, record);
-        say(pair.result, record);
-      }
+      for (const PairAnswer& pair : least.pairs) say(pair, record);
     }
   });
 }

@@ -378,6 +378,17 @@ IST_C_API ist_status ist_query_distance(ist_query* query, const double pose[16],
                                         const ist_budget* budget,
                                         ist_distance_result* result) IST_NOEXCEPT;
 
+/** The questions of ist_query_rows, to be added up, and of ist_world_ask, one at a time. */
+enum {
+  IST_ASK_NEAR = 0,           /**< ist_world_ask alone: lists the pairs of bodies that are near */
+  IST_ASK_INTERSECTS = 1,     /**< ist_query_intersects */
+  IST_ASK_LEAF_PAIRS = 2,     /**< ist_query_leaf_pairs; ist_query_rows counts them */
+  IST_ASK_DISTANCE = 4,       /**< ist_query_distance, to the tolerance */
+  IST_ASK_CONTACTS = 8,       /**< ist_query_contacts; rows have ist_contact_sums_wrench */
+  IST_ASK_PENETRATION = 16,   /**< ist_query_rows alone: ist_query_penetration, to the tolerance */
+  IST_ASK_TRIANGLE_PAIRS = 32 /**< ist_world_ask alone: ist_query_triangle_pairs */
+};
+
 /** The answer of ist_query_intersects. */
 enum {
   IST_ANSWER_UNKNOWN = 0, /**< no answer: after an error, or the budget ended the search */

@@ -199,15 +199,6 @@ IST_C_API ist_status ist_query_occlusion(ist_query* query, const double pose[16]
                                          const ist_occlusion_arrays* moving_arrays,
                                          ist_occlusion* fixed, ist_occlusion* moving) IST_NOEXCEPT;
 
-/** The questions of ist_query_rows, to be added up. */
-enum {
-  IST_ASK_INTERSECTS = 1,  /**< ist_query_intersects */
-  IST_ASK_LEAF_PAIRS = 2,  /**< ist_query_leaf_pairs, which counts them */
-  IST_ASK_DISTANCE = 4,    /**< ist_query_distance, to the tolerance */
-  IST_ASK_CONTACTS = 8,    /**< ist_query_contacts and ist_contact_sums_wrench */
-  IST_ASK_PENETRATION = 16 /**< ist_query_penetration, to the tolerance */
-};
-
 /** What ist_query_rows asks at every pose. */
 typedef struct ist_rows_options {
   size_t struct_size; /**< the size of this struct, bytes */

@@ -92,23 +92,38 @@ IST_C_API ist_status ist_world_set_pose(ist_world* world, uint32_t body,
 IST_C_API ist_status ist_world_get_pose(ist_world* world, uint32_t a, uint32_t b,
                                         double pose[16]) IST_NOEXCEPT;
 
-/** The answer of a pair of bodies that are near each other; lengths in mesh units. Members that a
- * function does not name are zero. */
+/** A question to all pairs of bodies that are near each other. */
+typedef struct ist_world_question {
+  size_t struct_size; /**< the size of this struct, bytes */
+  int32_t ask;        /**< one IST_ASK_... but IST_ASK_PENETRATION; 0, IST_ASK_NEAR, asks no pair */
+  int32_t reserved;   /**< zero */
+  double tolerance;   /**< of IST_ASK_DISTANCE: the interval is to be no wider */
+  ist_leaf_pair* leaf_pairs; /**< of IST_ASK_LEAF_PAIRS: takes those of one pair of bodies after the
+                                other; may be NULL if `leaf_capacity` is 0 */
+  size_t leaf_capacity;      /**< its elements */
+  ist_triangle_pair* triangles; /**< of IST_ASK_TRIANGLE_PAIRS: takes the pairs of triangles in the
+                                   same way */
+  size_t triangle_capacity;     /**< its elements */
+} ist_world_question;
+
+/** The answer of a pair of bodies that are near each other; lengths in mesh units. A member that
+ * names questions is zero after the others. */
 typedef struct ist_world_pair {
   uint32_t a,            /**< the body added first, which is the fixed one */
       b;                 /**< the other body, the moving one */
   ist_status status;     /**< IST_OK; IST_NOT_PREPARED, IST_POSE_INVALID, IST_TRIANGLES_MISSING */
-  int32_t answer;        /**< IST_ANSWER_...: of ist_world_intersects */
-  int32_t complete;      /**< 1: no budget ended the search; of a distance: it is narrow enough */
+  int32_t answer;        /**< IST_ASK_INTERSECTS: IST_ANSWER_... */
+  int32_t complete;      /**< 1: no budget ended the search; of a distance: it is narrow enough. Of
+                            IST_ASK_NEAR 0 */
   int32_t truncated;     /**< 1: the array of leaf pairs or triangles was too short for all */
   double distance_lower, /**< the surfaces are no nearer, as far as this call tells */
       distance_upper;    /**< and no farther apart */
-  uint64_t found;        /**< leaf pairs; of ist_world_triangle_pairs pairs of triangles */
+  uint64_t found;        /**< leaf pairs; of IST_ASK_TRIANGLE_PAIRS pairs of triangles */
   uint64_t first;        /**< the place of the pair's first element in that array */
   uint64_t written;      /**< valid elements there */
-  uint64_t contacts;     /**< of ist_world_contacts, for ist_world_get_contacts */
+  uint64_t contacts;     /**< IST_ASK_CONTACTS: for ist_world_get_contacts */
   double resolution;     /**< greatest distance between the surfaces in a leaf pair; 0 unknown */
-  double narrowest;      /**< of distances: no tolerance below this width can be reached */
+  double narrowest;      /**< IST_ASK_DISTANCE: no tolerance below this width can be reached */
   uint64_t sphere_tests; /**< tests made, as ist_budget counts them */
   double rotation_error; /**< of the given poses, the larger one: as in ist_query_result */
 } ist_world_pair;
@@ -124,54 +139,26 @@ typedef struct ist_world_result {
   int32_t truncated;     /**< 1: the array, or the room of the world, was too short for all pairs */
 } ist_world_result;
 
-/** Lists the pairs that are near, with the distance of their root bounds, and asks none. `pairs`
- * may be NULL where `capacity` is 0. This and the functions below depend on the poses of now alone.
- * Errors: IST_NOT_PREPARED before ist_world_prepare. Cost: 20 ns per body and 0.5 us per near pair.
- * [real time] */
-IST_C_API ist_status ist_world_near_pairs(ist_world* world, ist_world_pair* pairs, size_t capacity,
-                                          ist_world_result* result) IST_NOEXCEPT;
+/** Asks each pair of bodies that is near a question. IST_ASK_NEAR lists the pairs with the distance
+ * of their root bounds; each other question is that function of a query. IST_ASK_CONTACTS keeps the
+ * contacts in the world's memory: the sums of a pair make a force only if its `complete` is 1.
+ * `pairs` may be NULL if `capacity` is 0. `budget` may be NULL; it is one for the whole call: pairs
+ * are asked in their order until it is spent. The answer depends on the poses of now alone. Errors:
+ * IST_NOT_PREPARED before ist_world_prepare; IST_ARGUMENT_INVALID. Cost: 20 ns per body, 0.5 us per
+ * near pair, and what each pair's query costs. [real time] */
+IST_C_API ist_status ist_world_ask(ist_world* world, const ist_world_question* question,
+                                   const ist_budget* budget, ist_world_pair* pairs, size_t capacity,
+                                   ist_world_result* result) IST_NOEXCEPT;
 
-/** Decides of each near pair whether the bodies intersect. `budget` may be NULL; it is one for the
- * whole call: pairs are asked in their order until it is spent. [real time] */
-IST_C_API ist_status ist_world_intersects(ist_world* world, const ist_budget* budget,
-                                          ist_world_pair* pairs, size_t capacity,
-                                          ist_world_result* result) IST_NOEXCEPT;
-
-/** Finds the contacts of each near pair, in the world's memory. The sums of a pair make a force
- * only where its `complete` is 1. [real time] */
-IST_C_API ist_status ist_world_contacts(ist_world* world, const ist_budget* budget,
-                                        ist_world_pair* pairs, size_t capacity,
-                                        ist_world_result* result) IST_NOEXCEPT;
-
-/** Copies the first `capacity` contacts of a pair, and its sums, from the last ist_world_contacts;
- * `count` takes the number of all. Read the pair's ist_world_pair of that call first: it alone
- * tells whether the answer is complete. Where its `complete` is 0, a budget ended the search,
- * contacts and sums are those of a part of the leaf pairs, and no force. Coordinates are those of
- * the body added first. `contacts` may be NULL where `capacity` is 0; `sums` may be NULL. Errors:
- * IST_NOT_PREPARED where that call did not ask the pair. [real time] */
+/** Copies the first `capacity` contacts of a pair, and its sums, from the last ist_world_ask
+ * for IST_ASK_CONTACTS; `count` takes the number of all. Read the pair's ist_world_pair of that
+ * call first: it alone tells whether the answer is complete. Where its `complete` is 0, a budget
+ * ended the search, contacts and sums are those of a part of the leaf pairs, and no force.
+ * Coordinates are those of the body added first. `contacts` may be NULL where `capacity` is 0;
+ * `sums` may be NULL. Errors: IST_NOT_PREPARED where that call did not ask the pair. [real time] */
 IST_C_API ist_status ist_world_get_contacts(ist_world* world, uint32_t a, uint32_t b,
                                             ist_contact* contacts, size_t capacity,
                                             ist_contact_sums* sums, uint64_t* count) IST_NOEXCEPT;
-
-/** Finds the leaf pairs of each near pair: `leaf_pairs`, of `leaf_capacity` elements, takes those
- * of one pair after the other. [real time] */
-IST_C_API ist_status ist_world_leaf_pairs(ist_world* world, const ist_budget* budget,
-                                          ist_leaf_pair* leaf_pairs, size_t leaf_capacity,
-                                          ist_world_pair* pairs, size_t capacity,
-                                          ist_world_result* result) IST_NOEXCEPT;
-
-/** Finds the pairs of triangles that intersect, of each near pair, in the same way. [real time] */
-IST_C_API ist_status ist_world_triangle_pairs(ist_world* world, const ist_budget* budget,
-                                              ist_triangle_pair* triangles,
-                                              size_t triangle_capacity, ist_world_pair* pairs,
-                                              size_t capacity,
-                                              ist_world_result* result) IST_NOEXCEPT;
-
-/** Bounds the distance of each near pair by an interval no wider than `tolerance`. Errors:
- * IST_ARGUMENT_INVALID. [real time] */
-IST_C_API ist_status ist_world_distances(ist_world* world, double tolerance,
-                                         const ist_budget* budget, ist_world_pair* pairs,
-                                         size_t capacity, ist_world_result* result) IST_NOEXCEPT;
 
 /** The least distance between any two bodies of a world; lengths in mesh units. */
 typedef struct ist_least_distance {

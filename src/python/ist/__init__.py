@@ -27,9 +27,7 @@ from ._answers import (
     SweepStatus,
     SweepTable,
     TrianglePairs,
-    WorldLeafPairs,
-    WorldPairs,
-    WorldTrianglePairs,
+    WorldAnswer,
 )
 from ._errors import (
     NOT_PREPARED,

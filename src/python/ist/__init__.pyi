@@ -15,6 +15,7 @@ Path = Union[str, "PathLike[str]"]
 Spheres = Literal["default", "simple", "table", "tight", "slab"]
 Frame = Literal["unknown", "ras", "lps"]
 Question = Literal["intersects", "leaf_pairs", "distance", "contacts", "penetration"]
+WorldQuestion = Literal["near_pairs", "intersects", "leaf_pairs", "distances", "contacts", "triangle_pairs"]
 F8 = NDArray[np.float64]
 U4 = NDArray[np.uint32]
 Records = NDArray[np.void]
@@ -311,30 +312,14 @@ class Query:
         self, kind: Optional[Type[BaseException]], value: Optional[BaseException], trace: Optional[TracebackType]
     ) -> None: ...
 
-class WorldPairs(NamedTuple):
+class WorldAnswer(NamedTuple):
     pairs: Records
     count: int  # type: ignore[assignment]  # not the method of tuples
     complete: bool
     truncated: bool
     sphere_tests: int
-
-class WorldLeafPairs(NamedTuple):
-    pairs: Records
-    count: int  # type: ignore[assignment]  # not the method of tuples
-    complete: bool
-    truncated: bool
-    sphere_tests: int
-    leaf_pairs: Records
-    def leaf_pairs_of(self, row: Any) -> Records: ...
-
-class WorldTrianglePairs(NamedTuple):
-    pairs: Records
-    count: int  # type: ignore[assignment]  # not the method of tuples
-    complete: bool
-    truncated: bool
-    sphere_tests: int
-    triangle_pairs: Records
-    def triangle_pairs_of(self, row: Any) -> Records: ...
+    found: Optional[Records]
+    def found_of(self, row: Any) -> Records: ...
 
 class LeastDistance(NamedTuple):
     lower: float
@@ -370,13 +355,23 @@ class World:
     def prepare(self, pairs: Optional[ArrayLike] = None, *, progress: Optional[Follow] = None) -> None: ...
     def set_pose(self, body: int, pose: ArrayLike) -> None: ...
     def pose_of(self, a: int, b: int) -> F8: ...
-    def near_pairs(self, *, out: Optional[Records] = None) -> WorldPairs: ...
-    def intersects(self, *, out: Optional[Records] = None, tests: int = 0, seconds: float = 0.0) -> WorldPairs: ...
-    def contacts(self, *, out: Optional[Records] = None, tests: int = 0, seconds: float = 0.0) -> WorldPairs: ...
+    def ask(
+        self,
+        question: WorldQuestion,
+        *,
+        tolerance: float = 0.0,
+        into: Optional[Records] = None,
+        out: Optional[Records] = None,
+        tests: int = 0,
+        seconds: float = 0.0,
+    ) -> WorldAnswer: ...
+    def near_pairs(self, *, out: Optional[Records] = None) -> WorldAnswer: ...
+    def intersects(self, *, out: Optional[Records] = None, tests: int = 0, seconds: float = 0.0) -> WorldAnswer: ...
+    def contacts(self, *, out: Optional[Records] = None, tests: int = 0, seconds: float = 0.0) -> WorldAnswer: ...
     def contacts_of(self, a: int, b: int, *, out: Optional[Records] = None) -> Contacts: ...
     def distances(
         self, tolerance: float = 0.0, *, out: Optional[Records] = None, tests: int = 0, seconds: float = 0.0
-    ) -> WorldPairs: ...
+    ) -> WorldAnswer: ...
     def leaf_pairs(
         self,
         *,
@@ -384,7 +379,7 @@ class World:
         out: Optional[Records] = None,
         tests: int = 0,
         seconds: float = 0.0,
-    ) -> WorldLeafPairs: ...
+    ) -> WorldAnswer: ...
     def triangle_pairs(
         self,
         *,
@@ -392,7 +387,7 @@ class World:
         out: Optional[Records] = None,
         tests: int = 0,
         seconds: float = 0.0,
-    ) -> WorldTrianglePairs: ...
+    ) -> WorldAnswer: ...
     def distance(self, tolerance: float = 0.0, *, tests: int = 0, seconds: float = 0.0) -> LeastDistance: ...
     def forget(self) -> None: ...
     def free(self) -> None: ...

@@ -69,7 +69,7 @@ class TrianglePairs(NamedTuple):
     rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|
 
 
-class WorldPairs(NamedTuple):
+class WorldAnswer(NamedTuple):
     """One row for each pair of bodies of a world that is near, sorted; all other pairs are apart."""
 
     pairs: np.ndarray  # WORLD_PAIR
@@ -77,36 +77,11 @@ class WorldPairs(NamedTuple):
     complete: bool  # every near pair was asked, and its answer is complete
     truncated: bool  # True: the array, or the room of the world, was too short
     sphere_tests: int
+    found: Optional[np.ndarray]  # LEAF_PAIR or TRIANGLE_PAIR, of one row after the other; None after another question
 
-
-class WorldLeafPairs(NamedTuple):
-    """The rows of WorldPairs, and the leaf pairs of all of them."""
-
-    pairs: np.ndarray  # WORLD_PAIR
-    count: int
-    complete: bool
-    truncated: bool
-    sphere_tests: int
-    leaf_pairs: np.ndarray  # LEAF_PAIR
-
-    def leaf_pairs_of(self, row):
-        """The leaf pairs of one row of `pairs`."""
-        return self.leaf_pairs[row["first"] : row["first"] + row["written"]]
-
-
-class WorldTrianglePairs(NamedTuple):
-    """The rows of WorldPairs, and the pairs of triangles of all of them."""
-
-    pairs: np.ndarray  # WORLD_PAIR
-    count: int
-    complete: bool
-    truncated: bool
-    sphere_tests: int
-    triangle_pairs: np.ndarray  # TRIANGLE_PAIR
-
-    def triangle_pairs_of(self, row):
-        """The pairs of triangles of one row of `pairs`."""
-        return self.triangle_pairs[row["first"] : row["first"] + row["written"]]
+    def found_of(self, row):
+        """The leaf pairs, or the pairs of triangles, of one row of `pairs`."""
+        return self.found[row["first"] : row["first"] + row["written"]]
 
 
 class LeastDistance(NamedTuple):

@@ -372,6 +372,19 @@ class WorldInfo(Sized):
     _fields_ = [("struct_size", c_size_t), ("bytes", c_uint64), ("bodies", c_uint64)]
 
 
+class WorldQuestion(Sized):
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("ask", c_int32),
+        ("reserved", c_int32),
+        ("tolerance", c_double),
+        ("leaf_pairs", c_void_p),
+        ("leaf_capacity", c_size_t),
+        ("triangles", c_void_p),
+        ("triangle_capacity", c_size_t),
+    ]
+
+
 class WorldResult(Sized):
     _fields_ = [
         ("struct_size", c_size_t),

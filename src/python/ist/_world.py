@@ -4,7 +4,7 @@ from ctypes import addressof, c_uint32, c_uint64, pointer
 
 import numpy as np
 
-from ._answers import Contacts, LeastDistance, WorldLeafPairs, WorldPairs, WorldTrianglePairs
+from ._answers import Contacts, LeastDistance, WorldAnswer
 from ._arrays import address, budget_of, by_columns, count_of, number_of, place_of, pose_of
 from ._errors import check, error_of, refuse
 from ._follow import Follower
@@ -20,12 +20,21 @@ from ._records import (
     LeastDistanceResult,
     WorldInfo,
     WorldOptions,
+    WorldQuestion,
     WorldResult,
 )
 from ._tree import need_tree
 
-_intersects, _contacts, _leaf_pairs = LIBRARY.ist_world_intersects, LIBRARY.ist_world_contacts, LIBRARY.ist_world_leaf_pairs
-_triangle_pairs, _distances, _near = LIBRARY.ist_world_triangle_pairs, LIBRARY.ist_world_distances, LIBRARY.ist_world_near_pairs
+_ask = LIBRARY.ist_world_ask
+# The questions, by their names: the library's number, and the dtype of what is found.
+QUESTIONS = {
+    "near_pairs": (0, None),
+    "intersects": (1, None),
+    "leaf_pairs": (2, LEAF_PAIR),
+    "distances": (4, None),
+    "contacts": (8, None),
+    "triangle_pairs": (32, TRIANGLE_PAIR),
+}
 
 
 class World(Lone):
@@ -84,8 +93,8 @@ class World(Lone):
         self._contacts = max(query.contacts, 0)
         self._trees, self._names = [], []
         self._prepared, self._most_near = 0, options.most_near
-        self._found = WorldResult()
-        self._found_at = addressof(self._found)
+        self._question, self._found = WorldQuestion(), WorldResult()
+        self._question_at, self._found_at = addressof(self._question), addressof(self._found)
         self._least = LeastDistanceResult()
         self._felt = np.empty(0, WORLD_PAIR)  # the rows of the last contacts()
 
@@ -170,25 +179,80 @@ class World(Lone):
         self._call(LIBRARY.ist_world_get_pose, self._body(a, "a"), self._body(b, "b"), address(columns))
         return by_columns(columns)
 
+    def ask(self, question, *, tolerance=0.0, into=None, out=None, tests=0, seconds=0.0):
+        """Asks each pair of bodies that is near a question, and returns a WorldAnswer.
+
+        question: "near_pairs" lists the pairs with the distance of their root bounds, and asks none. "intersects" tells by
+        `answer` whether they intersect: NO, NEAR or YES. "contacts" finds their contacts, for contacts_of(). "distances" bounds
+        their distance by an interval no wider than `tolerance`. "leaf_pairs" finds all pairs of voxels whose bounds overlap,
+        "triangle_pairs" all pairs of triangles with a common point: found_of(row) of the answer has those of one pair of bodies.
+
+        into: an array of LEAF_PAIR or TRIANGLE_PAIR that is filled by one pair of bodies after the other; by default one of
+        65,536. out: an array of WORLD_PAIR that is filled by the rows; by default one with room for all.
+        """
+        if question not in QUESTIONS:
+            refuse(f"question is {question!r}: pass one of {', '.join(QUESTIONS)}")
+        number, dtype = QUESTIONS[question]
+        width = number_of(tolerance, "tolerance")
+        place, length = None, 0
+        if dtype is not None:
+            into = np.empty(1 << 16, dtype) if into is None else into
+            place, length = place_of(into, dtype), len(into)
+        elif into is not None:
+            refuse(f"into: {question} fills no array: leave it out")
+        keep = question == "contacts"  # the rows of all pairs stay here, whatever `out` has room for
+        handle = self._enter()
+        try:
+            budget, limit = budget_of(tests, seconds)
+            asked, found, rows = self._question, self._found, out
+            asked.ask, asked.tolerance = number, width
+            asked.leaf_pairs, asked.leaf_capacity = (place, length) if dtype is LEAF_PAIR else (None, 0)
+            asked.triangles, asked.triangle_capacity = (place, length) if dtype is TRIANGLE_PAIR else (None, 0)
+            at = None if out is None else place_of(out, WORLD_PAIR)
+            if out is None or keep:
+                rows = np.empty(min(self._all_pairs(), self._prepared + self._most_near), WORLD_PAIR)
+                at = address(rows)
+            if keep:
+                self._felt = rows[:0]
+            status = _ask(handle, self._question_at, limit, at, len(rows), self._found_at)
+            if status:
+                raise error_of(status)
+            truncated = found.truncated == 1
+            if keep:
+                self._felt = rows[: found.written].copy()
+                if out is not None:
+                    given = min(len(out), found.written)
+                    out[:given] = rows[:given]
+                    rows, found.written, truncated = out, given, given < found.near_pairs
+            return WorldAnswer(
+                rows[: found.written], found.near_pairs, found.complete == 1, truncated, found.sphere_tests, into
+            )
+        finally:
+            self._lock.release()
+
     def near_pairs(self, *, out=None):
-        """The pairs that are near, with the distance of their root bounds; none is asked."""
-        return self._ask(out, 0, 0, lambda handle, _, at, room: _near(handle, at, room, self._found_at))
+        """ask("near_pairs")"""
+        return self.ask("near_pairs", out=out)
 
     def intersects(self, *, out=None, tests=0, seconds=0.0):
-        """Of each pair that is near, whether the bodies intersect: `answer` is NO, NEAR or YES."""
-        return self._ask(
-            out, tests, seconds, lambda handle, limit, at, room: _intersects(handle, limit, at, room, self._found_at)
-        )
+        """ask("intersects")"""
+        return self.ask("intersects", out=out, tests=tests, seconds=seconds)
 
     def contacts(self, *, out=None, tests=0, seconds=0.0):
-        """Finds the contacts of each pair that is near, for contacts_of()."""
-        return self._ask(
-            out,
-            tests,
-            seconds,
-            lambda handle, limit, at, room: _contacts(handle, limit, at, room, self._found_at),
-            keep=True,
-        )
+        """ask("contacts")"""
+        return self.ask("contacts", out=out, tests=tests, seconds=seconds)
+
+    def distances(self, tolerance=0.0, *, out=None, tests=0, seconds=0.0):
+        """ask("distances")"""
+        return self.ask("distances", tolerance=tolerance, out=out, tests=tests, seconds=seconds)
+
+    def leaf_pairs(self, *, into=None, out=None, tests=0, seconds=0.0):
+        """ask("leaf_pairs")"""
+        return self.ask("leaf_pairs", into=into, out=out, tests=tests, seconds=seconds)
+
+    def triangle_pairs(self, *, into=None, out=None, tests=0, seconds=0.0):
+        """ask("triangle_pairs")"""
+        return self.ask("triangle_pairs", into=into, out=out, tests=tests, seconds=seconds)
 
     def contacts_of(self, a, b, *, out=None):
         """The contacts of a pair, and its sums, from the last contacts(); coordinates of the body added first.
@@ -219,64 +283,6 @@ class World(Lone):
             bytearray(sums),
             float(row["rotation_error"]),
         )
-
-    def distances(self, tolerance=0.0, *, out=None, tests=0, seconds=0.0):
-        """Of each pair that is near the distance, an interval no wider than the tolerance."""
-        width = number_of(tolerance, "tolerance")
-        return self._ask(
-            out, tests, seconds, lambda handle, limit, at, room: _distances(handle, width, limit, at, room, self._found_at)
-        )
-
-    def leaf_pairs(self, *, into=None, out=None, tests=0, seconds=0.0):
-        """Of each pair that is near all pairs of voxels whose bounds overlap: `leaf_pairs_of(row)` of the answer has them.
-
-        into: an array of LEAF_PAIR that is filled, those of one pair of bodies after the other; by default one of 65,536.
-        """
-        return WorldLeafPairs(*self._list(LEAF_PAIR, _leaf_pairs, into, out, tests, seconds))
-
-    def triangle_pairs(self, *, into=None, out=None, tests=0, seconds=0.0):
-        """Of each pair that is near all pairs of triangles with a common point. `into`: as leaf_pairs(), of TRIANGLE_PAIR."""
-        return WorldTrianglePairs(*self._list(TRIANGLE_PAIR, _triangle_pairs, into, out, tests, seconds))
-
-    def _list(self, dtype, function, into, out, tests, seconds):
-        if into is None:
-            into = np.empty(1 << 16, dtype)
-        place, length = place_of(into, dtype), len(into)
-        found = self._ask(
-            out,
-            tests,
-            seconds,
-            lambda handle, limit, at, room: function(handle, limit, place, length, at, room, self._found_at),
-        )
-        return (*found, into)
-
-    # Asks with room for all rows that an answer can have. keep: the rows of all pairs stay here, whatever `out` has room for.
-    def _ask(self, out, tests, seconds, ask, keep=False):
-        handle = self._enter()
-        try:
-            budget, limit = budget_of(tests, seconds)
-            found, rows = self._found, out
-            place = None if out is None else place_of(out, WORLD_PAIR)
-            if out is None or keep:
-                rows = np.empty(min(self._all_pairs(), self._prepared + self._most_near), WORLD_PAIR)
-                place = address(rows)
-            if keep:
-                self._felt = rows[:0]
-            status = ask(handle, limit, place, len(rows))
-            if status:
-                raise error_of(status)
-            truncated = found.truncated == 1
-            if keep:
-                self._felt = rows[: found.written].copy()
-                if out is not None:
-                    given = min(len(out), found.written)
-                    out[:given] = rows[:given]
-                    rows, found.written, truncated = out, given, given < found.near_pairs
-            return WorldPairs(
-                rows[: found.written], found.near_pairs, found.complete == 1, truncated, found.sphere_tests
-            )
-        finally:
-            self._lock.release()
 
     def distance(self, tolerance=0.0, *, tests=0, seconds=0.0):
         """The least distance of all pairs, near or not: an interval no wider than the tolerance."""

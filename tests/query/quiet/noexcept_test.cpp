@@ -30,15 +30,10 @@ namespace {
 }
 
 [[maybe_unused]] void verbs_of_a_world(World& world, const Eigen::Isometry3d& pose,
-                                       const Budget& budget, std::span<LeafPair> leaf_pairs,
-                                       std::span<TrianglePair> triangles) {
+                                       const Budget& budget, const WorldQuestion& question) {
   static_assert(noexcept(world.set_pose(0, pose)));
-  static_assert(noexcept(world.near_pairs()));
-  static_assert(noexcept(world.intersects(budget)));
-  static_assert(noexcept(world.contacts(budget)));
-  static_assert(noexcept(world.leaf_pairs(leaf_pairs, budget)));
-  static_assert(noexcept(world.triangle_pairs(triangles, budget)));
-  static_assert(noexcept(world.distances(0.0, budget)));
+  static_assert(noexcept(world.ask(question, budget)));
+  static_assert(noexcept(world.manifold(0, 1)));
   static_assert(noexcept(world.distance(0.0, budget)));
   static_assert(noexcept(world.forget()));
   static_assert(noexcept(world.pose_of(0, 1)));

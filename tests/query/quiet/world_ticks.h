@@ -42,12 +42,16 @@ inline std::uint64_t ask_everything(World& world, std::vector<LeafPair>& leaves,
       if (tick % 11 == 10 && body == 3) pose.translation()[0] = HUGE_VAL;
       static_cast<void>(world.set_pose(body, pose));
     }
-    found += world.near_pairs().near_pairs;
-    for (const auto& pair : world.intersects(budget).pairs) found += pair.result.sphere_tests;
-    for (const auto& pair : world.contacts(budget).pairs) found += pair.result.leaf_pairs;
-    found += world.leaf_pairs(leaves, budget).sphere_tests;
-    found += world.triangle_pairs(triangles, budget).sphere_tests;
-    found += world.distances(0.01, budget).sphere_tests;
+    found += world.ask({}).near_pairs;
+    for (const WorldQuestion& question :
+         {WorldQuestion{WorldQuestion::kIntersects}, WorldQuestion{WorldQuestion::kContacts},
+          WorldQuestion{.kind = WorldQuestion::kLeafPairs, .leaf_pairs = leaves},
+          WorldQuestion{.kind = WorldQuestion::kTrianglePairs, .triangle_pairs = triangles},
+          WorldQuestion{WorldQuestion::kDistance, 0.01}}) {
+      for (const PairAnswer& pair : world.ask(question, budget).pairs) {
+        found += pair.sphere_tests + pair.found;
+      }
+    }
     found += world.distance(0.01, budget).sphere_tests;
     if (tick % 13 == 0) world.forget();
   }

@@ -54,9 +54,9 @@ TEST(BroadPhase, HoldsPairsWhoseRootsTouchToTheLastBit) {
     const double last = last_touching(
         0, 20 * size, [&](double t) { return roots_meet(a, b, pose_at(t), options.reach); });
     static_cast<void>(pose_at(last));
-    EXPECT_EQ(world.near_pairs().near_pairs, 1u) << turn;
+    EXPECT_EQ(world.ask(kNear).near_pairs, 1u) << turn;
     static_cast<void>(pose_at(1.01 * last));
-    EXPECT_EQ(world.near_pairs().near_pairs, 0u) << turn;
+    EXPECT_EQ(world.ask(kNear).near_pairs, 0u) << turn;
   }
 }
 

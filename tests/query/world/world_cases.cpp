@@ -32,26 +32,31 @@ World world_of(const std::vector<PlacedTree>& bodies, const WorldOptions& option
 WorldAnswers answers_of(World& world) {
   std::vector<LeafPair> leaves(1 << 18);
   std::vector<TrianglePair> triangles(1 << 18);
-  const auto intersections = world.intersects();
-  const auto listed = world.leaf_pairs(leaves);
-  const auto meeting = world.triangle_pairs(triangles);
-  const auto felt = world.contacts();
   WorldAnswers all;
-  for (std::size_t k = 0; k < intersections.pairs.size(); ++k) {
-    const PairIntersection& pair = intersections.pairs[k];
-    const PairLeaves& of_leaves = listed.pairs[k];
-    const PairTriangles& of_triangles = meeting.pairs[k];
-    const ContactManifold* manifold = felt.pairs[k].manifold;
-    all.pairs.push_back({pair.bodies,
-                         pair.status,
-                         pair.roots.lower,
-                         pair.roots.upper,
-                         pair.result.answer,
-                         {of_leaves.pairs.begin(), of_leaves.pairs.end()},
-                         {of_triangles.pairs.begin(), of_triangles.pairs.end()},
-                         manifold != nullptr ? manifold->sums().weight : 0,
-                         manifold != nullptr ? manifold->points().size() : 0});
+  for (const PairAnswer& pair : world.ask(kIntersects).pairs) {
+    all.pairs.push_back({.bodies = pair.bodies,
+                         .status = pair.status,
+                         .lower = pair.roots.lower,
+                         .upper = pair.roots.upper,
+                         .answer = pair.answer});
   }
+  const auto of_each = [&](const WorldQuestion& question, const auto& take) {
+    const WorldAnswer answer = world.ask(question);
+    for (std::size_t k = 0; k < answer.pairs.size(); ++k) take(answer.pairs[k], all.pairs[k]);
+  };
+  of_each(leaf_pairs_in(leaves), [&](const PairAnswer& pair, WorldAnswers::OfPair& of_pair) {
+    const auto first = leaves.begin() + static_cast<std::ptrdiff_t>(pair.first);
+    of_pair.leaf_pairs.assign(first, first + static_cast<std::ptrdiff_t>(pair.written));
+  });
+  of_each(triangle_pairs_in(triangles), [&](const PairAnswer& pair, WorldAnswers::OfPair& of_pair) {
+    const auto first = triangles.begin() + static_cast<std::ptrdiff_t>(pair.first);
+    of_pair.triangles.assign(first, first + static_cast<std::ptrdiff_t>(pair.written));
+  });
+  of_each(kContacts, [](const PairAnswer& pair, WorldAnswers::OfPair& of_pair) {
+    if (pair.manifold == nullptr) return;
+    of_pair.weight = pair.manifold->sums().weight;
+    of_pair.contacts = pair.manifold->points().size();
+  });
   return all;
 }
 

@@ -33,10 +33,10 @@ struct WorldAnswers {
     QueryStatus status;
     double lower, upper;  // of the roots
     Answer answer;
-    std::vector<LeafPair> leaf_pairs;
-    std::vector<TrianglePair> triangles;
-    double weight;  // of the contacts
-    std::size_t contacts;
+    std::vector<LeafPair> leaf_pairs = {};
+    std::vector<TrianglePair> triangles = {};
+    double weight = 0;  // of the contacts
+    std::size_t contacts = 0;
     friend bool operator==(const OfPair&, const OfPair&) = default;
   };
   std::vector<OfPair> pairs;
@@ -44,10 +44,23 @@ struct WorldAnswers {
 };
 [[nodiscard]] WorldAnswers answers_of(World& world);
 
+/// Questions of each kind.
+inline constexpr WorldQuestion kNear{WorldQuestion::kNear};
+inline constexpr WorldQuestion kIntersects{WorldQuestion::kIntersects};
+inline constexpr WorldQuestion kContacts{WorldQuestion::kContacts};
+[[nodiscard]] inline WorldQuestion leaf_pairs_in(std::span<LeafPair> out) {
+  return {.kind = WorldQuestion::kLeafPairs, .leaf_pairs = out};
+}
+[[nodiscard]] inline WorldQuestion triangle_pairs_in(std::span<TrianglePair> out) {
+  return {.kind = WorldQuestion::kTrianglePairs, .triangle_pairs = out};
+}
+[[nodiscard]] inline WorldQuestion distance_within(double tolerance) {
+  return {WorldQuestion::kDistance, tolerance};
+}
+
 /// The answer of a pair, or null where it is not listed.
-template <class Pair>
-[[nodiscard]] const Pair* find(const WorldAnswer<Pair>& answer, BodyPair bodies) {
-  for (const Pair& pair : answer.pairs) {
+[[nodiscard]] inline const PairAnswer* find(const WorldAnswer& answer, BodyPair bodies) {
+  for (const PairAnswer& pair : answer.pairs) {
     if (pair.bodies == bodies) return &pair;
   }
   return nullptr;

@@ -49,9 +49,8 @@ TEST(WorldDistance, HoldsTheLeastOfAllPairs) {
       EXPECT_EQ(found.complete, found.distance.upper - found.distance.lower <= tolerance);
       ASSERT_TRUE(found.nearest);
       EXPECT_LE(distance_of(world, bodies, *found.nearest), found.distance.upper + kRounding);
-      for (const PairDistance& pair : found.pairs) {
-        EXPECT_LE(outside(pair.result.distance, distance_of(world, bodies, pair.bodies)),
-                  kRounding);
+      for (const PairAnswer& pair : found.pairs) {
+        EXPECT_LE(outside(pair.distance, distance_of(world, bodies, pair.bodies)), kRounding);
         EXPECT_LE(outside(pair.roots, distance_of(world, bodies, pair.bodies)), kRounding);
       }
       unasked += 21 - static_cast<int>(found.pairs.size());
@@ -83,12 +82,12 @@ TEST(WorldDistance, CountsPairsThatWereNotPrepared) {
     const WorldDistance found = world.distance(1e-3);
     EXPECT_LE(outside(found.distance, truth), kRounding);
     wide += found.complete ? 0 : 1;
-    for (const PairDistance& pair : found.pairs) {
+    for (const PairAnswer& pair : found.pairs) {
       const bool prepared = world.query(pair.bodies.a, pair.bodies.b) != nullptr;
       EXPECT_EQ(pair.status, prepared ? QueryStatus::kDone : QueryStatus::kNotPrepared);
       if (prepared) continue;
-      EXPECT_EQ(pair.result.distance.lower, pair.roots.lower);
-      EXPECT_EQ(pair.result.distance.upper, pair.roots.upper);
+      EXPECT_EQ(pair.distance.lower, pair.roots.lower);
+      EXPECT_EQ(pair.distance.upper, pair.roots.upper);
     }
   }
   EXPECT_GT(wide, least(10, 0));

@@ -89,7 +89,7 @@ TEST_F(WorldMemory, BeyondTheLimitNamesThePair) {
     // Nothing was made.
     EXPECT_EQ(world.bytes(), 0u);
     EXPECT_EQ(world.query(0, 1), nullptr);
-    EXPECT_EQ(world.intersects().status, QueryStatus::kNotPrepared);
+    EXPECT_EQ(world.ask(kIntersects).status, QueryStatus::kNotPrepared);
     if (limit < two) continue;
     // What fits can be prepared; and what was there stays where more does not fit.
     world.prepare(first_two);
@@ -99,7 +99,7 @@ TEST_F(WorldMemory, BeyondTheLimitNamesThePair) {
     EXPECT_EQ(error_name([&] { world.prepare(); }), "memory-limit");
     EXPECT_EQ(world.query(0, 1), kept);
     EXPECT_EQ(world.bytes(), two);
-    EXPECT_EQ(world.intersects().status, QueryStatus::kDone);
+    EXPECT_EQ(world.ask(kIntersects).status, QueryStatus::kDone);
   }
 }
 
@@ -119,7 +119,7 @@ TEST_F(WorldMemory, OfAPairThatIsPreparedAgainIsKept) {
   EXPECT_EQ(world.query(0, 1), kept);
   world.prepare({});
   EXPECT_EQ(world.query(0, 1), nullptr);
-  EXPECT_EQ(world.near_pairs().pairs[0].status, QueryStatus::kNotPrepared);
+  EXPECT_EQ(world.ask(kNear).pairs[0].status, QueryStatus::kNotPrepared);
 }
 
 TEST_F(WorldMemory, IsAsItWasWhereItsCallerEndsThePreparation) {
@@ -161,7 +161,7 @@ TEST_F(WorldMemory, OutlivesTheTreesAndMoves) {
   }();
   first.prepare();
   World second = std::move(first);
-  EXPECT_EQ(second.intersects().pairs.size(), 3u);
+  EXPECT_EQ(second.ask(kIntersects).pairs.size(), 3u);
   first = World();
   EXPECT_EQ(first.body_count(), 0u);
 }

@@ -28,8 +28,8 @@ void expect_answer_of_a_query(World& world, const std::vector<PlacedTree>& bodie
   Query fresh(fixed, moving, options.query);
   ContactManifold manifold(fixed, moving, fresh.policy(), options.manifold);
   std::vector<LeafPair> out(1 << 18);
-  const auto intersections = world.intersects();
-  const PairIntersection* listed = find(intersections, pair);
+  const auto intersections = world.ask(kIntersects);
+  const PairAnswer* listed = find(intersections, pair);
   const Answer truth =
       meeting_pairs(fixed, moving, *pose).empty() ? ist::Answer::kNo : ist::Answer::kYes;
   meeting += truth == ist::Answer::kYes ? 1 : 0;
@@ -41,18 +41,29 @@ void expect_answer_of_a_query(World& world, const std::vector<PlacedTree>& bodie
     EXPECT_EQ(fresh.contacts(*pose, manifold).leaf_pairs, 0u);
     return;
   }
-  EXPECT_EQ(listed->result.answer, truth);
-  const auto leaves = world.leaf_pairs(out);
+  EXPECT_EQ(listed->answer, truth);
+  const auto leaves = world.ask(leaf_pairs_in(out));
   FoundPairs expected = ask(fresh, *pose);
-  const PairLeaves& of_leaves = *find(leaves, pair);
+  const PairAnswer& of_leaves = *find(leaves, pair);
   if (options.query.front_pairs > 0) {  // how much was kept shows there
-    expected.result.sphere_tests = of_leaves.result.sphere_tests;
+    expected.result.sphere_tests = of_leaves.sphere_tests;
   }
-  EXPECT_TRUE(same({of_leaves.result, {of_leaves.pairs.begin(), of_leaves.pairs.end()}}, expected));
-  const auto felt = world.contacts();
-  const PairContacts& of_contacts = *find(felt, pair);
-  EXPECT_EQ(of_contacts.result.leaf_pairs, fresh.contacts(*pose, manifold).leaf_pairs);
+  ASSERT_LE(of_leaves.first + of_leaves.written, out.size());
+  const auto first = out.begin() + static_cast<std::ptrdiff_t>(of_leaves.first);
+  EXPECT_TRUE(same({{.status = of_leaves.status,
+                     .complete = of_leaves.complete,
+                     .truncated = of_leaves.truncated,
+                     .level = of_leaves.level,
+                     .leaf_pairs = of_leaves.found,
+                     .sphere_tests = of_leaves.sphere_tests,
+                     .pad = of_leaves.pad},
+                    {first, first + static_cast<std::ptrdiff_t>(of_leaves.written)}},
+                   expected));
+  const auto felt = world.ask(kContacts);
+  const PairAnswer& of_contacts = *find(felt, pair);
+  EXPECT_EQ(of_contacts.found, fresh.contacts(*pose, manifold).leaf_pairs);
   ASSERT_NE(of_contacts.manifold, nullptr);
+  EXPECT_EQ(of_contacts.manifold, world.manifold(pair.b, pair.a));
   EXPECT_EQ(of_contacts.manifold->sums().weight, manifold.sums().weight);
   EXPECT_EQ(of_contacts.manifold->sums().spring.torque, manifold.sums().spring.torque);
   EXPECT_EQ(of_contacts.manifold->points().size(), manifold.points().size());
@@ -91,15 +102,15 @@ TEST(World, SaysHowFarThePosesOfAPairWere) {
     ASSERT_EQ(answer.pairs.size(), 3u);
     for (const auto& pair : answer.pairs) {
       const bool has_it = pair.bodies.a == 1 || pair.bodies.b == 1;
-      EXPECT_EQ(pair.result.rotation_error, has_it ? rotation_error(rough) : 0);
+      EXPECT_EQ(pair.rotation_error, has_it ? rotation_error(rough) : 0);
     }
   };
-  expect(world.intersects());
-  expect(world.intersects({.tests = 0}));
-  expect(world.contacts());
-  expect(world.distances(0.1));
-  expect(world.triangle_pairs({}));
-  expect(world.leaf_pairs({}));
+  expect(world.ask(kIntersects));
+  expect(world.ask(kIntersects, {.tests = 0}));
+  expect(world.ask(kContacts));
+  expect(world.ask(distance_within(0.1)));
+  expect(world.ask(triangle_pairs_in({})));
+  expect(world.ask(leaf_pairs_in({})));
   expect(world.distance(0));
 }
 
@@ -107,14 +118,14 @@ TEST(World, ListsPairsInOrder) {
   Random random(1);
   const std::vector<PlacedTree> bodies = scattered(random, 20, 6);
   World world = world_of(bodies);
-  const auto near = world.near_pairs();
+  const auto near = world.ask(kNear);
   ASSERT_GT(near.pairs.size(), 20u);
   EXPECT_LT(near.pairs.size(), 190u);
   EXPECT_EQ(near.near_pairs, near.pairs.size());
   EXPECT_TRUE(
       std::is_sorted(near.pairs.begin(), near.pairs.end(),
-                     [](const NearPair& x, const NearPair& y) { return x.bodies < y.bodies; }));
-  for (const NearPair& pair : near.pairs) EXPECT_LT(pair.bodies.a, pair.bodies.b);
+                     [](const PairAnswer& x, const PairAnswer& y) { return x.bodies < y.bodies; }));
+  for (const PairAnswer& pair : near.pairs) EXPECT_LT(pair.bodies.a, pair.bodies.b);
 }
 
 // A world that has moved about answers as one that was just made, in the same order.
@@ -132,7 +143,7 @@ TEST(World, DependsOnNoEarlierPose) {
         if (tick % 2 == 0) to[tick / 2 % 3] *= 10;
         moved_about.set_pose(body, pose_of(random.rotation(), to));
       }
-      static_cast<void>(moved_about.intersects());
+      static_cast<void>(moved_about.ask(kIntersects));
     }
     for (BodyIndex body = 0; body < 16; ++body) moved_about.set_pose(body, bodies[body].pose);
     World fresh = world_of(bodies, options);
@@ -205,7 +216,7 @@ TEST(World, GivesTheStatusOfAPoseToItsPairsAlone) {
   EXPECT_EQ(world.set_pose(3, bad), QueryStatus::kInvalidPose);
   EXPECT_FALSE(world.pose_of(0, 3));
   const auto is_of_3 = [](BodyPair pair) { return pair.a == 3 || pair.b == 3; };
-  const auto answer = world.intersects();
+  const auto answer = world.ask(kIntersects);
   EXPECT_EQ(answer.status, QueryStatus::kDone);
   EXPECT_FALSE(answer.complete);
   EXPECT_EQ(std::count_if(answer.pairs.begin(), answer.pairs.end(),
@@ -215,11 +226,11 @@ TEST(World, GivesTheStatusOfAPoseToItsPairsAlone) {
   for (const auto& pair : after.pairs) {
     EXPECT_EQ(pair.status, is_of_3(pair.bodies) ? QueryStatus::kInvalidPose : QueryStatus::kDone);
   }
-  for (const PairIntersection& pair : world.intersects().pairs) {
-    EXPECT_EQ(pair.result.answer == ist::Answer::kUnknown, is_of_3(pair.bodies));
+  for (const PairAnswer& pair : world.ask(kIntersects).pairs) {
+    EXPECT_EQ(pair.answer == ist::Answer::kUnknown, is_of_3(pair.bodies));
   }
-  for (const auto& pair : world.contacts().pairs) {
-    EXPECT_EQ(pair.result.status, pair.status);
+  for (const auto& pair : world.ask(kContacts).pairs) {
+    EXPECT_EQ(pair.status == QueryStatus::kDone, !is_of_3(pair.bodies));
     EXPECT_EQ(pair.manifold == nullptr, is_of_3(pair.bodies));
   }
   std::erase_if(after.pairs, [&](const auto& pair) { return is_of_3(pair.bodies); });
@@ -228,9 +239,9 @@ TEST(World, GivesTheStatusOfAPoseToItsPairsAlone) {
   EXPECT_EQ(after, others);
   // Two of them: each pair is listed once. Then all is well again.
   world.set_pose(6, bad);
-  const auto near = world.near_pairs();
+  const auto near = world.ask(kNear);
   EXPECT_EQ(std::count_if(near.pairs.begin(), near.pairs.end(),
-                          [](const NearPair& pair) { return pair.status != QueryStatus::kDone; }),
+                          [](const PairAnswer& pair) { return pair.status != QueryStatus::kDone; }),
             13);
   world.set_pose(6, bodies[6].pose);
   EXPECT_EQ(world.set_pose(3, bodies[3].pose), QueryStatus::kDone);
@@ -244,7 +255,7 @@ TEST(World, HoldsPosesFarAway) {
   for (const double x : {1e308, 1e308, -1e308, 0.0, 1.5, 1e200, 1e154})
     world.add(ball, shift({x, x, x}));
   world.prepare();
-  const auto answer = world.intersects();
+  const auto answer = world.ask(kIntersects);
   ASSERT_NE(find(answer, {0, 1}), nullptr);
   EXPECT_EQ(find(answer, {0, 1})->status, QueryStatus::kDone);
   EXPECT_EQ(find(answer, {3, 4}), nullptr);
@@ -255,7 +266,7 @@ TEST(World, HoldsPosesFarAway) {
   World ends(small_world());
   for (const double x : {1e308, -1e308}) ends.add(ball, shift({x, x, x}));
   ends.prepare();
-  EXPECT_TRUE(ends.intersects().pairs.empty());
+  EXPECT_TRUE(ends.ask(kIntersects).pairs.empty());
   const WorldDistance far = ends.distance(0.1);
   EXPECT_EQ(far.status, QueryStatus::kDone);
   EXPECT_GT(far.distance.lower, 1e307);
@@ -267,18 +278,18 @@ TEST(World, NeverLooksAtAPairThatIsIgnored) {
   for (const double x : {0.0, 0.5, 1.0}) world.add(ball, shift({x, 0, 0}));
   world.ignore(2, 0);
   world.prepare();
-  EXPECT_EQ(find(world.intersects(), {0, 2}), nullptr);
-  EXPECT_EQ(world.intersects().pairs.size(), 2u);
+  EXPECT_EQ(find(world.ask(kIntersects), {0, 2}), nullptr);
+  EXPECT_EQ(world.ask(kIntersects).pairs.size(), 2u);
   EXPECT_EQ(world.query(0, 2), nullptr);
   const std::uint64_t before = world.bytes();
   world.ignore(0, 1);  // after prepare() too
-  EXPECT_EQ(world.intersects().pairs.size(), 1u);
+  EXPECT_EQ(world.ask(kIntersects).pairs.size(), 1u);
   EXPECT_EQ(before - world.bytes(), world.bytes_for(0, 1));
   world.ignore(1, 2);
   Eigen::Isometry3d bad = shift({kNan, 0, 0});
   world.set_pose(1, bad);
-  EXPECT_TRUE(world.intersects().pairs.empty());
-  EXPECT_TRUE(world.intersects().complete);
+  EXPECT_TRUE(world.ask(kIntersects).pairs.empty());
+  EXPECT_TRUE(world.ask(kIntersects).complete);
   const WorldDistance none = world.distance(0.1);
   EXPECT_EQ(none.status, QueryStatus::kDone);
   EXPECT_TRUE(none.complete);
@@ -289,32 +300,34 @@ TEST(World, NeverLooksAtAPairThatIsIgnored) {
 TEST(World, TellsOfPairsThatWereNotPrepared) {
   const SphereTree ball = exact_tree(icosphere(2, 1), 8);
   World world(small_world());
-  EXPECT_EQ(world.intersects().status, QueryStatus::kNotPrepared);
+  EXPECT_EQ(world.ask(kIntersects).status, QueryStatus::kNotPrepared);
   for (const double x : {0.0, 1.5, 3.0}) world.add(ball, shift({x, 0, 0}));
-  EXPECT_EQ(world.near_pairs().status, QueryStatus::kNotPrepared);
+  EXPECT_EQ(world.ask(kNear).status, QueryStatus::kNotPrepared);
   EXPECT_EQ(world.distance(0.1).status, QueryStatus::kNotPrepared);
   EXPECT_EQ(world.distance(0.1).distance.upper, HUGE_VAL);
   const BodyPair first{1, 0};
   world.prepare({&first, 1});
-  const auto answer = world.intersects();
+  const auto answer = world.ask(kIntersects);
   EXPECT_EQ(answer.status, QueryStatus::kDone);
   EXPECT_FALSE(answer.complete);
   ASSERT_EQ(answer.pairs.size(), 2u);
-  EXPECT_EQ(answer.pairs[0].result.answer, ist::Answer::kYes);
+  EXPECT_EQ(answer.pairs[0].answer, ist::Answer::kYes);
   EXPECT_EQ(answer.pairs[1].status, QueryStatus::kNotPrepared);
-  EXPECT_EQ(answer.pairs[1].result.status, QueryStatus::kNotPrepared);
+  EXPECT_EQ(answer.pairs[1].status, QueryStatus::kNotPrepared);
   EXPECT_STREQ(to_string(answer.pairs[1].status), "not-prepared");
   EXPECT_EQ(answer.pairs[1].roots.lower, 0);
   EXPECT_GT(answer.pairs[1].roots.upper, 3);
-  EXPECT_EQ(world.contacts().pairs[1].manifold, nullptr);
+  EXPECT_EQ(world.ask(kContacts).pairs[1].manifold, nullptr);
+  EXPECT_EQ(world.manifold(1, 2), nullptr);
+  EXPECT_NE(world.manifold(1, 0), nullptr);
   // The pairs that are near can be prepared as they are listed.
   std::vector<BodyPair> wanted;
-  for (const NearPair& pair : world.near_pairs().pairs) wanted.push_back(pair.bodies);
+  for (const PairAnswer& pair : world.ask(kNear).pairs) wanted.push_back(pair.bodies);
   world.prepare(wanted);
-  EXPECT_TRUE(world.intersects().complete);
-  EXPECT_EQ(world.intersects().pairs[1].result.answer, ist::Answer::kYes);
+  EXPECT_TRUE(world.ask(kIntersects).complete);
+  EXPECT_EQ(world.ask(kIntersects).pairs[1].answer, ist::Answer::kYes);
   world.add(ball, shift({9, 0, 0}));
-  EXPECT_EQ(world.intersects().status, QueryStatus::kNotPrepared);
+  EXPECT_EQ(world.ask(kIntersects).status, QueryStatus::kNotPrepared);
 }
 
 TEST(World, ListsThePreparedPairsFirstWhereMoreAreNearThanFit) {
@@ -325,14 +338,14 @@ TEST(World, ListsThePreparedPairsFirstWhereMoreAreNearThanFit) {
   for (int i = 0; i < 6; ++i) world.add(ball, shift({0.1 * i, 0, 0}));
   const BodyPair last[] = {{4, 5}, {2, 5}};
   world.prepare(last);
-  const auto answer = world.intersects();
+  const auto answer = world.ask(kIntersects);
   EXPECT_TRUE(answer.truncated);
   EXPECT_FALSE(answer.complete);
   EXPECT_EQ(answer.near_pairs, 15u);
   std::vector<BodyPair> listed;
   for (const auto& pair : answer.pairs) listed.push_back(pair.bodies);
   EXPECT_EQ(listed, (std::vector<BodyPair>{{0, 1}, {0, 2}, {2, 5}, {4, 5}}));
-  EXPECT_EQ(answer.pairs[2].result.answer, ist::Answer::kYes);
+  EXPECT_EQ(answer.pairs[2].answer, ist::Answer::kYes);
   // Pairs that are not listed count in the distance all the same.
   EXPECT_EQ(world.distance(0.1).distance.lower, 0);
 }
@@ -346,12 +359,12 @@ TEST(World, ReachesFartherWhereItIsAskedTo) {
     world.add(ball);
     world.add(ball, shift({4, 0, 0}));
     world.prepare();
-    const auto answer = world.distances(1e-3);
+    const auto answer = world.ask(distance_within(1e-3));
     ASSERT_EQ(answer.pairs.size(), reach > 0 ? 1u : 0u);
     if (reach == 0) continue;
-    EXPECT_NEAR(answer.pairs[0].result.distance.lower, 2, 0.2);
+    EXPECT_NEAR(answer.pairs[0].distance.lower, 2, 0.2);
     EXPECT_GT(answer.pairs[0].roots.lower, 1);
-    EXPECT_LE(answer.pairs[0].roots.lower, answer.pairs[0].result.distance.lower);
+    EXPECT_LE(answer.pairs[0].roots.lower, answer.pairs[0].distance.lower);
   }
 }
 

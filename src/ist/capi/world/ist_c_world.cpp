@@ -45,7 +45,6 @@ ist_status prepare(const char* function, ist_world* world, const ist_body_pair* 
     bool prepared = false;
     followed(follower, [&](const Proceed& proceed) {
       held->world.prepare(some, proceed);
-      held->contacts = {};
       prepared = true;
     });
     // A caller who says stop after the last pair is too late.
@@ -101,7 +100,6 @@ ist_status ist_world_ignore(ist_world* world, uint32_t a, uint32_t b) IST_NOEXCE
     const Held<WorldObject> held(call, "world", world);
     if (held.status() != IST_OK) return held.status();
     held->world.ignore(a, b);
-    held->contacts = {};
     return IST_OK;
   });
 }

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <span>
-
 #include "ist/capi/ist_world.h"
 #include "ist/capi/objects.h"
 #include "ist/query/world/world.h"
@@ -18,7 +16,6 @@ struct WorldObject {
 
   explicit WorldObject(const WorldOptions& options) : world(options) {}
   World world;
-  std::span<const PairContacts> contacts = {};  // of the last ist_world_contacts
 };
 
 /// Converts the status of a whole answer; stores the message of an error.

@@ -18,7 +18,7 @@ void NearSet::clear() noexcept {
 
 void NearSet::add(const PairAtPose& pair) noexcept {
   ++count_;
-  Entry entry{pair.place < PairTable::kIgnored, pair.near.bodies,
+  Entry entry{pair.place < PairTable::kIgnored, pair.bodies,
               static_cast<std::uint32_t>(order_.size())};
   if (order_.size() < room_) {  // both lists have this room
     pairs_.push_back(pair);

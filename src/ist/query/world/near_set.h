@@ -11,10 +11,12 @@ namespace ist {
 
 /// A pair of bodies at their poses, for the world's own use.
 struct PairAtPose {
-  NearPair near;
-  bool overlap;         ///< the roots are no farther apart than they need be to be near
-  std::uint32_t place;  ///< of its query; PairTable::kNoQuery without one
-  BodyPose pose;        ///< of the later body in the first one's coordinates
+  BodyPair bodies;
+  QueryStatus status;      ///< as PairAnswer has it before the pair is asked
+  DistanceInterval roots;  ///< as PairAnswer has it
+  bool overlap;            ///< the roots are no farther apart than they need be to be near
+  std::uint32_t place;     ///< of its query; PairTable::kNoQuery without one
+  BodyPose pose;           ///< of the later body in the first one's coordinates
 };
 
 /// The pairs that are near, in bounded memory: where there is no room for all, those with a query

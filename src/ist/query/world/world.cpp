@@ -83,6 +83,7 @@ void World::ignore(BodyIndex a, BodyIndex b) {
   if (place < PairTable::kIgnored) s.made[place].reset();
   place = PairTable::kIgnored;
   s.stale = true;
+  ++s.felt;
 }
 
 std::uint64_t World::bytes_for(BodyIndex a, BodyIndex b) const {
@@ -138,10 +139,8 @@ std::optional<Eigen::Isometry3d> World::pose_of(BodyIndex a, BodyIndex b) const 
 }
 
 Query* World::query(BodyIndex a, BodyIndex b) noexcept {
-  detail::WorldState& s = *state_;
-  if (!s.is_there(a) || !s.is_there(b) || a == b) return nullptr;
-  const std::uint32_t place = s.table[{std::min(a, b), std::max(a, b)}];
-  return place < PairTable::kIgnored ? &s.made[place]->query : nullptr;
+  detail::WorldState::PairMemory* const memory = state_->find(a, b);
+  return memory != nullptr ? &memory->query : nullptr;
 }
 
 BodyIndex World::body_count() const noexcept {

@@ -47,76 +47,86 @@ struct WorldOptions {
   /// Pairs whose root bounds are no farther apart than this are near too, mesh units: at least 0
   /// and finite.
   double reach = 0;
-  /// The most pairs that one answer lists beyond those that are prepared, some 800 bytes each.
+  /// The most pairs that one answer lists beyond those that are prepared, some 450 bytes each.
   std::size_t most_near = 1 << 12;
   /// The most bytes to reserve for queries, manifolds and answers.
   std::uint64_t max_memory = std::uint64_t{4} << 30;
 };
 
-/// A pair of bodies that are near each other, and what their roots tell.
-struct NearPair {
+/// A question to all pairs of bodies that are near each other.
+struct WorldQuestion {
+  /// The verb of Query that each pair is asked by.
+  enum Kind : std::uint8_t {
+    kNear,           ///< none: the answer lists the pairs, with the distance of their roots
+    kIntersects,     ///< Query::intersects
+    kContacts,       ///< Query::contacts, each pair with a manifold of its own
+    kLeafPairs,      ///< Query::leaf_pairs
+    kTrianglePairs,  ///< Query::triangle_pairs
+    kDistance,       ///< Query::distance
+  };
+  Kind kind = kNear;
+  double tolerance = 0;  ///< of kDistance: the interval is to be no wider, mesh units
+  /// Of kLeafPairs: takes the leaf pairs, sorted, of one pair of bodies after the other.
+  std::span<LeafPair> leaf_pairs = {};
+  /// Of kTrianglePairs: takes the pairs of triangles in the same way.
+  std::span<TrianglePair> triangle_pairs = {};
+};
+
+/// The answer of a pair of bodies that are near each other; lengths in mesh units. A member that
+/// names kinds of questions keeps its default after the others.
+struct PairAnswer {
   BodyPair bodies{};  ///< a < b
   /// kDone; kNotPrepared for a pair without a query, or so far apart that no double holds the way
-  /// from one to the other; kInvalidPose where a body has no valid pose.
+  /// from one to the other; kInvalidPose if a body has no valid pose; else as the query gives it.
   QueryStatus status = QueryStatus::kDone;
-  /// The distance between the surfaces, as far as the root bounds tell it, mesh units; without a
-  /// pose from 0 to the largest double.
+  Answer answer = Answer::kUnknown;  ///< kIntersects: exact where both trees have triangles
+  bool complete = false;      ///< no budget ended the search; kDistance: within the tolerance
+  bool truncated = false;     ///< kLeafPairs, kTrianglePairs: the span was too short for all
+  Found way = Found::kFresh;  ///< kContacts, kLeafPairs: QueryResult::found
+  int level = 0;              ///< kContacts, kLeafPairs: QueryResult::level
+  /// The distance between the surfaces, as far as the root bounds tell it; without a pose from 0 to
+  /// the largest double.
   DistanceInterval roots{};
-};
-/// Whether two bodies of a pair intersect.
-struct PairIntersection : NearPair {
-  IntersectionResult result{};  ///< as Query::intersects gives it
-};
-/// The contacts of a pair.
-struct PairContacts : NearPair {
-  QueryResult result{};  ///< as Query::contacts gives it
-  /// The contacts, until the next contacts() of the world; null where the pair was not asked.
+  DistanceInterval distance{};     ///< as far as the question told it, or else the roots
+  double narrowest = 0;            ///< kDistance: no tolerance below this width can be reached
+  double resolution = 0;           ///< the surfaces in a leaf pair are no farther apart; 0: unknown
+  double pad = 0;                  ///< kContacts, kLeafPairs: QueryResult::pad
+  std::uint64_t found = 0;         ///< leaf pairs, or of kTrianglePairs pairs of triangles
+  std::uint64_t first = 0;         ///< the place of the first of them in the span of the question
+  std::uint64_t written = 0;       ///< how many are there, from `first` on
+  std::uint64_t sphere_tests = 0;  ///< as Budget::tests counts them
+  double rotation_error = 0;       ///< the larger one of the poses that both bodies were given
+  /// kContacts: World::manifold of the pair, or null if it was not asked.
   const ContactManifold* manifold = nullptr;
-};
-/// The leaf pairs of a pair.
-struct PairLeaves : NearPair {
-  QueryResult result{};  ///< as Query::leaf_pairs gives it
-  std::span<const LeafPair> pairs =
-      {};  ///< in the caller's span, sorted; the first where truncated
-};
-/// The pairs of triangles of a pair that intersect.
-struct PairTriangles : NearPair {
-  TrianglePairsResult result{};              ///< as Query::triangle_pairs gives it
-  std::span<const TrianglePair> pairs = {};  ///< in the caller's span, sorted
-};
-/// The distance between two bodies of a pair.
-struct PairDistance : NearPair {
-  DistanceResult result{};  ///< as Query::distance gives it; the roots' interval where not asked
 };
 
 /// One answer for each pair that is near, in the order of BodyPair. All other pairs are apart: the
 /// distance between their surfaces is over WorldOptions::reach.
-template <class Pair>
 struct WorldAnswer {
   /// kBusy; kNotPrepared before prepare(), or after another body was added: no pairs were looked
   /// for.
   QueryStatus status = QueryStatus::kDone;
-  bool complete = true;              ///< every near pair is listed, and its answer is complete
-  bool truncated = false;            ///< more pairs are near than fit: the first of them are listed
-  std::uint64_t near_pairs = 0;      ///< all pairs that are near, listed or not
-  std::uint64_t sphere_tests = 0;    ///< of all pairs, as Budget::tests counts them
-  std::span<const Pair> pairs = {};  ///< until the next call of the same verb
+  bool complete = true;            ///< every near pair is listed, and its answer is complete
+  bool truncated = false;          ///< more pairs are near than fit: the first of them are listed
+  std::uint64_t near_pairs = 0;    ///< all pairs that are near, listed or not
+  std::uint64_t sphere_tests = 0;  ///< of all pairs, as Budget::tests counts them
+  std::span<const PairAnswer> pairs = {};  ///< until the next ask() of the world
 };
 
 /// The least distance between any two bodies of a world that are not ignored.
 struct WorldDistance {
-  /// As for WorldAnswer; kInvalidPose where a body has no valid pose: the interval is then that of
-  /// the other bodies.
+  /// As for WorldAnswer; kInvalidPose if a body has no valid pose: the interval then holds the
+  /// distance of the other bodies.
   QueryStatus status = QueryStatus::kDone;
   bool complete = false;  ///< the interval is no wider than the tolerance, and counts all pairs
-  /// Holds the least distance, mesh units. Both ends are the largest double where no pair counts;
+  /// Holds the least distance, mesh units. Both ends are the largest double if no pair counts;
   /// [0, infinity] without an answer.
   DistanceInterval distance{0, std::numeric_limits<double>::infinity()};
   std::optional<BodyPair> nearest = std::nullopt;  ///< the pair with the least upper end
   std::uint64_t sphere_tests = 0;                  ///< of all pairs, as Budget::tests counts them
   /// The pairs that may be nearest by their roots, in the order of BodyPair, until the next call;
   /// those that need not be asked have the interval of their roots.
-  std::span<const PairDistance> pairs = {};
+  std::span<const PairAnswer> pairs = {};
 };
 
 /// Some bodies, each at a pose, and the queries of their pairs. A broad phase over the roots'
@@ -124,11 +134,10 @@ struct WorldDistance {
 /// BodyPair. Lengths are in mesh units, one for all bodies; poses map mesh coordinates of a body to
 /// the world's.
 ///
-/// The answer of a pair is that of a Query of its two bodies at pose_of(a, b), bit by bit. Its
-/// `rotation_error` is the larger one of the poses that both bodies were given. Which
-/// pairs are near and in which order they are listed depends on the poses alone, and on no earlier
-/// ones. What a query keeps (QueryOptions::front_pairs, and the triangles that were nearest last)
-/// each pair keeps for itself.
+/// A Query of the two bodies of a pair at pose_of(a, b) gives the same answer, bit by bit. The list
+/// of near pairs and its order depend on the poses alone, and on no earlier ones. Each pair has a
+/// memory of its own for kept pairs (QueryOptions::front_pairs) and for the triangles that were
+/// nearest last.
 ///
 /// A budget is one for the whole call. Tests are given to pairs in their order, so the first may
 /// take all: add the bodies that matter most first. Beyond the budget stand the broad phase, and
@@ -153,7 +162,7 @@ class IST_API World {
   /// @param pose maps mesh coordinates to the world's
   /// @param name names the body in errors; if empty, `body` and its number do
   ///
-  /// Throws kPolicyMissing where the tree lacks the bounds of the options, kPoseInvalid,
+  /// Throws kPolicyMissing if the tree lacks the bounds of the options, kPoseInvalid,
   /// kArgumentInvalid beyond kMostBodies and for a tree in another frame of a patient than an
   /// earlier one, std::bad_alloc.
   BodyIndex add(const SphereTree& tree,
@@ -161,7 +170,7 @@ class IST_API World {
                 std::string name = {});
   BodyIndex add(const SphereTree&&, const Eigen::Isometry3d& = {}, std::string = {}) = delete;
 
-  /// Never looks at a pair again, and frees its query. Throws kArgumentInvalid where a body is not
+  /// Never looks at a pair again, and frees its query. Throws kArgumentInvalid if a body is not
   /// there, or both are the same.
   void ignore(BodyIndex a, BodyIndex b);
 
@@ -186,36 +195,25 @@ class IST_API World {
   /// Does so for some pairs, or for all without them, and can be followed and ended.
   ///
   /// @param pairs   as above; nothing: all that are not ignored
-  /// @param proceed asked before each pair; where it says no, kCancelled is thrown, and the world
-  ///                is as it was
+  /// @param proceed asked before each pair; if it says no, prepare() throws kCancelled, and the
+  ///                world is as it was
   void prepare(std::optional<std::span<const BodyPair>> pairs, const Proceed& proceed);
 
-  /// Moves a body. Returns kInvalidPose where `pose` is no rigid motion: the pairs of this body
+  /// Moves a body. Returns kInvalidPose if `pose` is no rigid motion: the pairs of this body
   /// then have that status until its next pose. kNoSuchBody, or kBusy, change nothing.
   QueryStatus set_pose(BodyIndex body, const Eigen::Isometry3d& pose) noexcept;
 
-  /// Lists the pairs that are near, without asking any. Cost: 20 ns a body, 0.5 µs a pair that is
-  /// near; if no body was moved since the last verb, none.
-  [[nodiscard]] WorldAnswer<NearPair> near_pairs() noexcept;
-  /// Tests of each pair that is near whether the bodies intersect.
-  [[nodiscard]] WorldAnswer<PairIntersection> intersects(const Budget& budget = {}) noexcept;
-  /// Finds the contacts of each pair that is near, each in a manifold of its own.
-  [[nodiscard]] WorldAnswer<PairContacts> contacts(const Budget& budget = {}) noexcept;
-  /// Finds the leaf pairs of each pair that is near.
+  /// Asks each pair that is near a question.
   ///
-  /// @param out    takes the leaf pairs of one pair after the other
-  /// @param budget of the whole call
-  [[nodiscard]] WorldAnswer<PairLeaves> leaf_pairs(std::span<LeafPair> out,
-                                                   const Budget& budget = {}) noexcept;
-  /// Finds the pairs of triangles that intersect, of each pair that is near.
+  /// @param question names the verb of Query, and has its tolerance or its span
+  /// @param budget   of the whole call; kNear needs none
   ///
-  /// @param out    takes them, of one pair after the other
-  /// @param budget of the whole call
-  [[nodiscard]] WorldAnswer<PairTriangles> triangle_pairs(std::span<TrianglePair> out,
-                                                          const Budget& budget = {}) noexcept;
-  /// Bounds the distance of each pair that is near, to a tolerance in mesh units.
-  [[nodiscard]] WorldAnswer<PairDistance> distances(double tolerance,
-                                                    const Budget& budget = {}) noexcept;
+  /// Cost: 20 ns a body and 0.5 µs a near pair if a body was moved since the last verb; then what
+  /// each pair's query costs.
+  [[nodiscard]] WorldAnswer ask(const WorldQuestion& question, const Budget& budget = {}) noexcept;
+  /// Returns the contacts that the last question of kContacts found for a pair, until the next such
+  /// question, prepare() or ignore(). Null if it did not ask the pair.
+  [[nodiscard]] const ContactManifold* manifold(BodyIndex a, BodyIndex b) const noexcept;
   /// Bounds the least distance of all pairs, near or not, to a tolerance in mesh units. Asks pairs
   /// by their roots' lower ends, the nearest first, until no other can matter; pairs without a
   /// query count with their roots.
@@ -226,17 +224,17 @@ class IST_API World {
 
   /// Returns the pose at which a pair is asked: from mesh coordinates of `b` to those of `a`, after
   /// both poses were projected to rigid motions. It is composed in twice the precision of double
-  /// and rounded once, so that the place of the bodies in the world does not matter. Nothing where
-  /// a body is not there or has no valid pose.
+  /// and rounded once, so that the place of the bodies in the world does not matter. Returns
+  /// nothing if a body is not there or has no valid pose.
   [[nodiscard]] std::optional<Eigen::Isometry3d> pose_of(BodyIndex a, BodyIndex b) const noexcept;
-  /// The query of a pair, or null where it has none. What it is asked counts as an earlier
+  /// Returns the query of a pair, or null if it has none. A question to it counts as an earlier
   /// question.
   [[nodiscard]] Query* query(BodyIndex a, BodyIndex b) noexcept;
-  /// The number of bodies.
+  /// Returns the number of bodies.
   [[nodiscard]] BodyIndex body_count() const noexcept;
-  /// The name of a body; empty where it is not there.
+  /// Returns the name of a body; empty if it is not there.
   [[nodiscard]] std::string_view name(BodyIndex body) const noexcept;
-  /// Bytes reserved for queries, manifolds and answers.
+  /// Returns the bytes reserved for queries, manifolds and answers.
   [[nodiscard]] std::uint64_t bytes() const noexcept;
 
  private:

@@ -1,8 +1,6 @@
 #include <algorithm>
-#include <utility>
 
 #include "ist/query/traversal/budget_meter.h"
-#include "ist/query/world/not_asked.h"
 #include "ist/query/world/world_state.h"
 
 namespace ist {
@@ -11,116 +9,198 @@ namespace {
 using detail::Use;
 using detail::WorldState;
 
-// Begins an answer with the pairs that are near. Its status is other than kDone where there is
-// none.
-template <class Pair>
-WorldAnswer<Pair> begin_answer(WorldState& s, const Use& use) noexcept {
-  WorldAnswer<Pair> all;
-  if (!use || !s.ready) {
-    all.status = use ? QueryStatus::kNotPrepared : QueryStatus::kBusy;
-    all.complete = false;
-    return all;
-  }
-  s.find_near();
-  const NearSet& near = s.answers.near;
-  all.near_pairs = near.count();
-  all.truncated = near.count() > near.size();
-  all.complete = !all.truncated;
-  return all;
+// The answer of a pair that was not asked: what the roots tell.
+PairAnswer by_roots(const PairAtPose& at) noexcept {
+  PairAnswer pair;
+  pair.bodies = at.bodies;
+  pair.status = at.status;
+  pair.roots = pair.distance = at.roots;
+  return pair;
 }
 
-// Asks all pairs that are near, in order.
-template <class Pair, class Ask>
-WorldAnswer<Pair> ask_all(WorldState& s, std::vector<Pair>& out, const Budget& budget,
-                          Ask ask) noexcept {
-  const Use use(s);
-  WorldAnswer<Pair> all = begin_answer<Pair>(s, use);
-  if (all.status != QueryStatus::kDone) return all;
-  const NearSet& near = s.answers.near;
-  for (std::size_t k = 0; k < near.size(); ++k) {
-    const PairAtPose& at = near[k];
-    Pair& pair = out[k];
-    pair = {};
-    static_cast<NearPair&>(pair) = at.near;
-    if (at.near.status != QueryStatus::kDone || budget.is_past()) {
-      leave(at, pair);
-    } else {
-      ask(pair, s.memory(at), to_isometry(at.pose), BudgetMeter(budget, all.sphere_tests).rest());
+// Counts the test of the roots of a pair that a question or its budget left out.
+void leave(WorldQuestion::Kind kind, PairAnswer& pair) noexcept {
+  if (pair.status == QueryStatus::kInvalidPose) return;
+  pair.sphere_tests = 1;
+  if (kind == WorldQuestion::kDistance) pair.narrowest = pair.roots.upper - pair.roots.lower;
+}
+
+// Takes the members that the results of all verbs have.
+template <class Result>
+void take(const Result& result, PairAnswer& pair) noexcept {
+  pair.status = result.status;
+  pair.complete = result.complete;
+  pair.sphere_tests = result.sphere_tests;
+}
+void take_leaf_pairs(const QueryResult& result, PairAnswer& pair) noexcept {
+  take(result, pair);
+  pair.truncated = result.truncated;
+  pair.way = result.found;
+  pair.level = result.level;
+  if (result.distance) pair.distance = *result.distance;
+  pair.resolution = result.resolution;
+  pair.pad = result.pad;
+  pair.found = result.leaf_pairs;
+}
+void take_distance(const DistanceResult& result, PairAnswer& pair) noexcept {
+  take(result, pair);
+  if (result.status == QueryStatus::kDone) pair.distance = result.distance;
+  pair.narrowest = result.narrowest;
+}
+
+// Asks the query of a pair. `pair.first` is where the span of the question is free.
+void ask_query(const WorldQuestion& question, Query& query, ContactManifold& manifold,
+               const Eigen::Isometry3d& pose, const Budget& budget, PairAnswer& pair) noexcept {
+  switch (question.kind) {
+    case WorldQuestion::kNear:
+      break;
+    case WorldQuestion::kIntersects: {
+      const IntersectionResult result = query.intersects(pose, budget);
+      take(result, pair);
+      pair.answer = result.answer;
+      pair.resolution = result.resolution;
+      break;
     }
-    pair.result.rotation_error = s.rotation_error_of(pair.bodies);
-    all.sphere_tests += pair.result.sphere_tests;
-    all.complete = all.complete && pair.result.status == QueryStatus::kDone && pair.result.complete;
+    case WorldQuestion::kContacts:
+      take_leaf_pairs(query.contacts(pose, manifold, budget), pair);
+      pair.manifold = &manifold;
+      break;
+    case WorldQuestion::kLeafPairs: {
+      const std::span<LeafPair> out = question.leaf_pairs.subspan(pair.first);
+      take_leaf_pairs(query.leaf_pairs(pose, out, budget), pair);
+      pair.written = std::min<std::uint64_t>(pair.found, out.size());
+      break;
+    }
+    case WorldQuestion::kTrianglePairs: {
+      const std::span<TrianglePair> out = question.triangle_pairs.subspan(pair.first);
+      const TrianglePairsResult result = query.triangle_pairs(pose, out, budget);
+      take(result, pair);
+      pair.truncated = result.truncated;
+      pair.found = result.triangle_pairs;
+      pair.written = std::min<std::uint64_t>(pair.found, out.size());
+      break;
+    }
+    case WorldQuestion::kDistance:
+      take_distance(query.distance(pose, question.tolerance, budget), pair);
+      break;
   }
-  all.pairs = {out.data(), near.size()};
-  return all;
+}
+
+// Returns whether a pair that counts has a body without a valid pose.
+bool lacks_a_pose(const WorldState& s) noexcept {
+  const auto count = static_cast<BodyIndex>(s.bodies.size());
+  for (BodyIndex lost = 0; lost < count; ++lost) {
+    if (s.broad.has(lost)) continue;
+    for (BodyIndex other = 0; other < count; ++other) {
+      if (other == lost) continue;
+      const BodyPair pair{std::min(lost, other), std::max(lost, other)};
+      if (s.table[pair] != PairTable::kIgnored) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
 
-WorldAnswer<NearPair> World::near_pairs() noexcept {
+WorldAnswer World::ask(const WorldQuestion& question, const Budget& budget) noexcept {
   const ScopedFloatEnvironment environment;
   WorldState& s = *state_;
   const Use use(s);
-  WorldAnswer<NearPair> all = begin_answer<NearPair>(s, use);
-  if (all.status != QueryStatus::kDone) return all;
+  if (!use) return {.status = QueryStatus::kBusy, .complete = false};
+  if (question.kind == WorldQuestion::kContacts) ++s.felt;
+  if (!s.ready) return {.status = QueryStatus::kNotPrepared, .complete = false};
+  s.find_near();
   const NearSet& near = s.answers.near;
-  for (std::size_t k = 0; k < near.size(); ++k) s.answers.pairs[k] = near[k].near;
-  all.sphere_tests = near.size();
-  all.pairs = {s.answers.pairs.data(), near.size()};
+  const std::span<PairAnswer> pairs = std::span(s.answers.pairs).first(near.size());
+  const bool truncated = near.count() > near.size();
+  WorldAnswer all{
+      .complete = !truncated, .truncated = truncated, .near_pairs = near.count(), .pairs = pairs};
+  std::uint64_t written = 0;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const PairAtPose& at = near[k];
+    PairAnswer& pair = pairs[k];
+    pair = by_roots(at);
+    if (question.kind == WorldQuestion::kNear) {
+      ++all.sphere_tests;
+      continue;
+    }
+    pair.first = written;
+    if (at.status != QueryStatus::kDone || budget.is_past()) {
+      leave(question.kind, pair);
+    } else {
+      WorldState::PairMemory& memory = s.memory(at);
+      ask_query(question, memory.query, memory.manifold, to_isometry(at.pose),
+                BudgetMeter(budget, all.sphere_tests).rest(), pair);
+      if (pair.manifold != nullptr) memory.felt = s.felt;
+    }
+    pair.rotation_error = s.rotation_error_of(pair.bodies);
+    written += pair.written;
+    all.sphere_tests += pair.sphere_tests;
+    all.complete = all.complete && pair.status == QueryStatus::kDone && pair.complete;
+  }
   return all;
 }
 
-WorldAnswer<PairIntersection> World::intersects(const Budget& budget) noexcept {
-  const ScopedFloatEnvironment environment;
-  return ask_all(
-      *state_, state_->answers.intersections, budget,
-      [](PairIntersection& pair, WorldState::PairMemory& memory, const Eigen::Isometry3d& pose,
-         const Budget& rest) { pair.result = memory.query.intersects(pose, rest); });
+const ContactManifold* World::manifold(BodyIndex a, BodyIndex b) const noexcept {
+  const WorldState::PairMemory* const memory = state_->find(a, b);
+  return memory != nullptr && memory->felt == state_->felt ? &memory->manifold : nullptr;
 }
 
-WorldAnswer<PairContacts> World::contacts(const Budget& budget) noexcept {
+WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
   const ScopedFloatEnvironment environment;
-  return ask_all(*state_, state_->answers.contacts, budget,
-                 [](PairContacts& pair, WorldState::PairMemory& memory,
-                    const Eigen::Isometry3d& pose, const Budget& rest) {
-                   pair.result = memory.query.contacts(pose, memory.manifold, rest);
-                   pair.manifold = &memory.manifold;
-                 });
-}
+  WorldState& s = *state_;
+  const Use use(s);
+  if (!use) return {.status = QueryStatus::kBusy};
+  if (!s.ready) return {.status = QueryStatus::kNotPrepared};
 
-WorldAnswer<PairLeaves> World::leaf_pairs(std::span<LeafPair> out, const Budget& budget) noexcept {
-  const ScopedFloatEnvironment environment;
-  return ask_all(*state_, state_->answers.leaves, budget,
-                 [&](PairLeaves& pair, WorldState::PairMemory& memory,
-                     const Eigen::Isometry3d& pose, const Budget& rest) {
-                   pair.result = memory.query.leaf_pairs(pose, out, rest);
-                   const std::uint64_t given =
-                       std::min<std::uint64_t>(pair.result.leaf_pairs, out.size());
-                   pair.pairs = out.first(given);
-                   out = out.subspan(given);
-                 });
-}
+  double lower = s.find_candidates();  // of all pairs that are done with
+  double upper = kLargestDistance;
+  const std::vector<WorldState::Candidate>& candidates = s.answers.candidates;
+  const std::span<PairAnswer> pairs = std::span(s.answers.nearest).first(candidates.size());
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    pairs[k] = by_roots(s.look(candidates[k].bodies));
+    leave(WorldQuestion::kDistance, pairs[k]);
+    upper = std::min(upper, pairs[k].roots.upper);
+  }
+  std::sort(pairs.begin(), pairs.end(), [](const PairAnswer& a, const PairAnswer& b) {
+    return a.roots.lower < b.roots.lower || (a.roots.lower == b.roots.lower && a.bodies < b.bodies);
+  });
 
-WorldAnswer<PairTriangles> World::triangle_pairs(std::span<TrianglePair> out,
-                                                 const Budget& budget) noexcept {
-  const ScopedFloatEnvironment environment;
-  return ask_all(*state_, state_->answers.triangles, budget,
-                 [&](PairTriangles& pair, WorldState::PairMemory& memory,
-                     const Eigen::Isometry3d& pose, const Budget& rest) {
-                   pair.result = memory.query.triangle_pairs(pose, out, rest);
-                   const std::uint64_t given =
-                       std::min<std::uint64_t>(pair.result.triangle_pairs, out.size());
-                   pair.pairs = out.first(given);
-                   out = out.subspan(given);
-                 });
-}
+  const double width = tolerance > 0 ? tolerance : 0;
+  std::uint64_t spent = 0;
+  for (PairAnswer& pair : pairs) {
+    // All pairs that are left are no nearer than this one's roots.
+    const bool enough =
+        pair.roots.lower > upper || upper - std::min(lower, pair.roots.lower) <= width;
+    if (!enough && pair.status == QueryStatus::kDone && !budget.is_past()) {
+      const PairAtPose at = s.look(pair.bodies);
+      take_distance(s.memory(at).query.distance(to_isometry(at.pose), tolerance,
+                                                BudgetMeter(budget, spent).rest()),
+                    pair);
+      spent += pair.sphere_tests;
+    }
+    pair.rotation_error = s.rotation_error_of(pair.bodies);
+    lower = std::min(lower, pair.distance.lower);
+    upper = std::min(upper, pair.distance.upper);
+  }
 
-WorldAnswer<PairDistance> World::distances(double tolerance, const Budget& budget) noexcept {
-  const ScopedFloatEnvironment environment;
-  return ask_all(
-      *state_, state_->answers.distances, budget,
-      [&](PairDistance& pair, WorldState::PairMemory& memory, const Eigen::Isometry3d& pose,
-          const Budget& rest) { pair.result = memory.query.distance(pose, tolerance, rest); });
+  WorldDistance all;
+  all.distance = {std::min(lower, upper), upper};
+  double least = kLargestDistance;
+  for (const PairAnswer& pair : pairs) {
+    all.sphere_tests += pair.sphere_tests;
+    const double end = pair.distance.upper;
+    if (all.nearest && !(end < least || (end == least && pair.bodies < *all.nearest))) continue;
+    all.nearest = pair.bodies;
+    least = end;
+  }
+  const bool lost = lacks_a_pose(s);
+  if (lost) all.status = QueryStatus::kInvalidPose;
+  all.complete = !lost && upper - all.distance.lower <= width;
+  std::sort(pairs.begin(), pairs.end(),
+            [](const PairAnswer& a, const PairAnswer& b) { return a.bodies < b.bodies; });
+  all.pairs = pairs;
+  return all;
 }
 
 }  // namespace ist

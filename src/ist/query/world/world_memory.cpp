@@ -38,9 +38,7 @@ class PairBytes {
 
 std::uint64_t WorldState::Answers::bytes_for(std::size_t room) noexcept {
   return std::uint64_t{room} *
-         (sizeof(PairAtPose) + 16 + sizeof(Candidate) + sizeof(NearPair) +
-          sizeof(PairIntersection) + sizeof(PairContacts) + sizeof(PairLeaves) +
-          sizeof(PairTriangles) + 2 * sizeof(PairDistance));
+         (sizeof(PairAtPose) + 16 + sizeof(Candidate) + 2 * sizeof(PairAnswer));
 }
 
 BodyPair WorldState::checked(BodyIndex a, BodyIndex b) const {
@@ -140,6 +138,7 @@ void WorldState::prepare(std::span<const BodyPair> pairs, const Proceed& proceed
   made = std::move(next);
   for (std::size_t k = 0; k < pairs.size(); ++k) table[pairs[k]] = static_cast<std::uint32_t>(k);
   ready = stale = true;
+  ++felt;
 }
 
 }  // namespace ist::detail

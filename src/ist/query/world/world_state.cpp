@@ -30,15 +30,7 @@ WorldState::PairMemory::PairMemory(BodyPair pair, const Body& a, const Body& b,
       manifold(a.tree, b.tree, query.policy(), options.manifold) {}
 
 WorldState::Answers::Answers(std::size_t most)
-    : room(most),
-      near(most),
-      pairs(most),
-      intersections(most),
-      contacts(most),
-      leaves(most),
-      triangles(most),
-      distances(most),
-      nearest(most) {
+    : room(most), near(most), pairs(most), nearest(most) {
   candidates.reserve(most);
 }
 
@@ -61,13 +53,14 @@ void WorldState::move(BodyIndex index, const Eigen::Isometry3d& pose) noexcept {
 }
 
 PairAtPose WorldState::look(BodyPair pair) const noexcept {
-  PairAtPose at{{pair, QueryStatus::kInvalidPose, kUnknown}, true, table[pair], {}};
+  PairAtPose at{pair, QueryStatus::kInvalidPose, kUnknown, true, table[pair], {}};
   if (!broad.has(pair.a) || !broad.has(pair.b)) return at;
   const SphereTree &a = bodies[pair.a].tree, &b = bodies[pair.b].tree;
   at.pose = between(bodies[pair.a].pose, bodies[pair.b].pose);
   const auto relative = relative_pose(to_isometry(at.pose), a.parts().lattice, b.parts().lattice);
   if (!relative) {  // no double holds the way: over a third of the largest is between them
-    at.near = {pair, QueryStatus::kNotPrepared, {0.25 * kLargestDistance, kLargestDistance}};
+    at.status = QueryStatus::kNotPrepared;
+    at.roots = {0.25 * kLargestDistance, kLargestDistance};
     at.overlap = false;
     return at;
   }
@@ -77,8 +70,8 @@ PairAtPose WorldState::look(BodyPair pair) const noexcept {
   const RootTest roots =
       test_roots(a, b, QueryState::policy_of(a, b, options.query), *relative, margin);
   at.overlap = roots.overlap;
-  at.near.roots = roots.distance;
-  at.near.status = at.place < PairTable::kIgnored ? QueryStatus::kDone : QueryStatus::kNotPrepared;
+  at.roots = roots.distance;
+  at.status = at.place < PairTable::kIgnored ? QueryStatus::kDone : QueryStatus::kNotPrepared;
   return at;
 }
 

@@ -32,6 +32,7 @@ struct WorldState {
     BodyPair bodies;
     Query query;
     ContactManifold manifold;
+    std::uint64_t felt = 0;  // the question of contacts that filled the manifold last
   };
   /// A pair that may be the nearest, by the balls of its bodies.
   struct Candidate {
@@ -48,12 +49,7 @@ struct WorldState {
     std::size_t room = 0;
     NearSet near;
     std::vector<Candidate> candidates;
-    std::vector<NearPair> pairs;
-    std::vector<PairIntersection> intersections;
-    std::vector<PairContacts> contacts;
-    std::vector<PairLeaves> leaves;
-    std::vector<PairTriangles> triangles;
-    std::vector<PairDistance> distances, nearest;
+    std::vector<PairAnswer> pairs, nearest;  // of ask(), of distance()
   };
 
   explicit WorldState(const WorldOptions& options);
@@ -82,6 +78,12 @@ struct WorldState {
   [[nodiscard]] double rotation_error_of(BodyPair pair) const noexcept {
     return std::max(bodies[pair.a].rotation_error, bodies[pair.b].rotation_error);
   }
+  /// Returns the memory of two bodies in either order, or null where they have none.
+  [[nodiscard]] PairMemory* find(BodyIndex a, BodyIndex b) const noexcept {
+    if (!is_there(a) || !is_there(b) || a == b) return nullptr;
+    const std::uint32_t place = table[{std::min(a, b), std::max(a, b)}];
+    return place < PairTable::kIgnored ? made[place].get() : nullptr;
+  }
   /// Returns the query of a pair that is prepared.
   [[nodiscard]] PairMemory& memory(const PairAtPose& pair) noexcept { return *made[pair.place]; }
   /// Returns a pair at its poses.
@@ -98,8 +100,9 @@ struct WorldState {
   PairTable table;
   std::vector<std::unique_ptr<PairMemory>> made;  // by the table's places
   Answers answers;
-  bool ready = false;  // the answers have room for these bodies
-  bool stale = true;   // a body was moved since the last find_near()
+  bool ready = false;      // the answers have room for these bodies
+  bool stale = true;       // a body was moved since the last find_near()
+  std::uint64_t felt = 1;  // counts questions of contacts, and what ends their contacts
   std::atomic_flag in_use;
 };
 
