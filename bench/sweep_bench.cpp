@@ -78,8 +78,8 @@ turns_within = [{5}, {5}, {5}]
 class LoopInC {
  public:
   explicit LoopInC(const Job& job) {
-    need(ist_tree_load((job.folder() / "upper.ist").c_str(), &fixed_));
-    need(ist_tree_load((job.folder() / "lower.ist").c_str(), &moving_));
+    need(ist_tree_load((job.folder() / "upper.ist").c_str(), nullptr, &fixed_));
+    need(ist_tree_load((job.folder() / "lower.ist").c_str(), nullptr, &moving_));
     need(ist_query_create(fixed_, moving_, nullptr, &query_));
   }
   ~LoopInC() {

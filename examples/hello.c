@@ -14,7 +14,7 @@ static ist_tree* jaw_tree(int32_t jaw) {
   const ist_build_options options = {.struct_size = sizeof options, .voxel_size = 0.4};
   ist_mesh* mesh = NULL;
   ist_tree* tree = NULL;
-  /* ist_mesh_read("scan.stl", &mesh) reads a mesh of your own. */
+  /* ist_mesh_read("scan.stl", NULL, &mesh) reads a mesh of your own. */
   if (succeeds(ist_jaw_create(jaw, 1, &mesh))) succeeds(ist_tree_build(mesh, &options, &tree));
   ist_mesh_free(mesh); /* The tree keeps all that it needs. */
   return tree;

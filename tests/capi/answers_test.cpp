@@ -393,7 +393,7 @@ TEST(CTrees, TellTheUnitOfTheirFile) {
     const MeshSource source{"ball.stl", 1, static_cast<LengthUnit>(unit)};
     write_tree(build_tree(icosphere(1, 1), {.voxel_size = 0.5, .source = source}), file);
     ist_tree* tree = nullptr;
-    ASSERT_EQ(name(ist_tree_load(file.c_str(), &tree)), "ok");
+    ASSERT_EQ(name(ist_tree_load(file.c_str(), nullptr, &tree)), "ok");
     auto info = sized<ist_tree_info>();
     EXPECT_EQ(name(ist_tree_get_info(tree, &info)), "ok");
     EXPECT_EQ(info.unit, unit);
@@ -408,7 +408,7 @@ TEST(CTrees, TellTheFrameOfTheirFile) {
   ball.frame = PatientFrame::kLps;
   write_stl(ball, file);
   ist_mesh* mesh = nullptr;
-  ASSERT_EQ(name(ist_mesh_read(file.c_str(), &mesh)), "ok");
+  ASSERT_EQ(name(ist_mesh_read(file.c_str(), nullptr, &mesh)), "ok");
   auto options = sized<ist_build_options>();
   options.voxel_size = 0.5;
   std::array<ist_tree*, 2> trees{};

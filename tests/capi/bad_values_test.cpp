@@ -231,11 +231,11 @@ TEST_F(CMisuse, OfOptionsIsTold) {
 // Missing and invalid files; the message names the file.
 TEST_F(CMisuse, OfFilesIsTold) {
   const std::string none = (folder_.path() / "none").string();
-  EXPECT_EQ(name(ist_tree_load(none.c_str(), &no_tree_)), "file-unreadable");
+  EXPECT_EQ(name(ist_tree_load(none.c_str(), nullptr, &no_tree_)), "file-unreadable");
   EXPECT_NE(std::string(ist_last_error_message()).find(none), std::string::npos);
-  EXPECT_EQ(name(ist_tree_load(scene_.c_str(), &no_tree_)), "not-a-tree");
-  EXPECT_EQ(name(ist_mesh_read(scene_.c_str(), &no_mesh_)), "not-a-mesh");
-  EXPECT_EQ(name(ist_tree_save(tree_, "/no/such/folder/body.ist")), "file-unwritable");
+  EXPECT_EQ(name(ist_tree_load(scene_.c_str(), nullptr, &no_tree_)), "not-a-tree");
+  EXPECT_EQ(name(ist_mesh_read(scene_.c_str(), nullptr, &no_mesh_)), "not-a-mesh");
+  EXPECT_EQ(name(ist_tree_save(tree_, "/no/such/folder/body.ist", nullptr)), "file-unwritable");
   EXPECT_EQ(name(ist_servo_open_scene(none.c_str(), &servo_options_, &no_servo_)),
             "file-unreadable");
   const std::string bad = folder_.write("bad.toml", "unit = \"furlong\"\n").string();

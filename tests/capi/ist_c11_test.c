@@ -48,7 +48,7 @@ static ist_mesh* make_mesh(void) {
   ist_mesh* mesh = NULL;
   IS(ist_mesh_create(kCorners, 8, kTriangles, 12, &mesh), IST_OK);
   ist_mesh_info info = {.struct_size = sizeof info};
-  IS(ist_mesh_get_info(mesh, &info), IST_OK);
+  IS(ist_mesh_get_info(mesh, NULL, &info), IST_OK);
   CHECK(info.vertices == 8 && info.triangles == 12 && info.closed == 1 && info.consistent == 1);
   CHECK(info.signed_volume == 1000 && info.box_min[0] == 0 && info.box_max[2] == 10);
   return mesh;
@@ -64,9 +64,9 @@ static ist_tree* make_tree(const char* folder) {
 
   char path[4096];
   CHECK(snprintf(path, sizeof path, "%s/cube.ist", folder) < (int)sizeof path);
-  IS(ist_tree_save(built, path), IST_OK);
+  IS(ist_tree_save(built, path, NULL), IST_OK);
   ist_tree* loaded = NULL;
-  IS(ist_tree_load(path, &loaded), IST_OK);
+  IS(ist_tree_load(path, NULL, &loaded), IST_OK);
   ist_tree_info was = {.struct_size = sizeof was}, is = {.struct_size = sizeof is};
   IS(ist_tree_get_info(built, &was), IST_OK);
   IS(ist_tree_get_info(loaded, &is), IST_OK);

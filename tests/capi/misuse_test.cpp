@@ -27,17 +27,13 @@ TEST_F(CMisuse, OfANullPointerIsToldByItsName) {
   is_null("vertices", ist_mesh_create_float(nullptr, 3, indices, 1, &no_mesh_));
   is_null("triangles", ist_mesh_create_float(floats_.data(), 3, nullptr, 1, &no_mesh_));
   is_null("mesh", ist_mesh_create_float(floats_.data(), 3, indices, 1, nullptr));
-  is_null("path", ist_mesh_read(nullptr, &no_mesh_));
-  is_null("mesh", ist_mesh_read(file_.c_str(), nullptr));
-  is_null("mesh", ist_mesh_get_info(nullptr, &mesh_info_));
-  is_null("info", ist_mesh_get_info(mesh_, nullptr));
-  is_null("mesh", ist_mesh_get_info_with_progress(nullptr, nullptr, &mesh_info_));
-  is_null("info", ist_mesh_get_info_with_progress(mesh_, nullptr, nullptr));
+  is_null("path", ist_mesh_read(nullptr, nullptr, &no_mesh_));
+  is_null("mesh", ist_mesh_read(file_.c_str(), nullptr, nullptr));
+  is_null("mesh", ist_mesh_get_info(nullptr, nullptr, &mesh_info_));
+  is_null("info", ist_mesh_get_info(mesh_, nullptr, nullptr));
   is_null("mesh", ist_mesh_get_size(nullptr, &count_, &count_));
   is_null("vertices", ist_mesh_get_size(mesh_, nullptr, &count_));
   is_null("triangles", ist_mesh_get_size(mesh_, &count_, nullptr));
-  is_null("path", ist_mesh_read_with_progress(nullptr, nullptr, &no_mesh_));
-  is_null("mesh", ist_mesh_read_with_progress(file_.c_str(), nullptr, nullptr));
   is_null("mesh", ist_mesh_copy(nullptr, nullptr, 0, nullptr, 0));
   is_null("vertices", ist_mesh_copy(mesh_, nullptr, 1, nullptr, 0));
   is_null("triangles", ist_mesh_copy(mesh_, nullptr, 0, nullptr, 1));
@@ -45,27 +41,18 @@ TEST_F(CMisuse, OfANullPointerIsToldByItsName) {
   is_null("mesh", ist_tree_build(nullptr, &build_, &no_tree_));
   is_null("options", ist_tree_build(mesh_, nullptr, &no_tree_));
   is_null("tree", ist_tree_build(mesh_, &build_, nullptr));
-  is_null("path", ist_tree_load(nullptr, &no_tree_));
-  is_null("tree", ist_tree_load(file_.c_str(), nullptr));
-  is_null("path", ist_tree_load_with_progress(nullptr, nullptr, &no_tree_));
-  is_null("tree", ist_tree_load_with_progress(file_.c_str(), nullptr, nullptr));
-  is_null("tree", ist_tree_save_with_progress(nullptr, file_.c_str(), nullptr));
-  is_null("path", ist_tree_save_with_progress(tree_, nullptr, nullptr));
-  is_null("tree", ist_tree_save(nullptr, file_.c_str()));
-  is_null("path", ist_tree_save(tree_, nullptr));
+  is_null("path", ist_tree_load(nullptr, nullptr, &no_tree_));
+  is_null("tree", ist_tree_load(file_.c_str(), nullptr, nullptr));
+  is_null("tree", ist_tree_save(nullptr, file_.c_str(), nullptr));
+  is_null("path", ist_tree_save(tree_, nullptr, nullptr));
   is_null("tree", ist_tree_get_info(nullptr, &tree_info_));
   is_null("info", ist_tree_get_info(tree_, nullptr));
   std::uint64_t bytes = 0;
-  is_null("tree", ist_tree_to_memory(nullptr, nullptr, 0, &bytes));
-  is_null("memory", ist_tree_to_memory(tree_, nullptr, 1, &bytes));
-  is_null("bytes", ist_tree_to_memory(tree_, nullptr, 0, nullptr));
-  is_null("memory", ist_tree_from_memory(nullptr, 1, &no_tree_));
-  is_null("tree", ist_tree_from_memory(corners, 1, nullptr));
-  is_null("tree", ist_tree_to_memory_with_progress(nullptr, nullptr, 0, nullptr, &bytes));
-  is_null("memory", ist_tree_to_memory_with_progress(tree_, nullptr, 1, nullptr, &bytes));
-  is_null("bytes", ist_tree_to_memory_with_progress(tree_, nullptr, 0, nullptr, nullptr));
-  is_null("memory", ist_tree_from_memory_with_progress(nullptr, 1, nullptr, &no_tree_));
-  is_null("tree", ist_tree_from_memory_with_progress(corners, 1, nullptr, nullptr));
+  is_null("tree", ist_tree_to_memory(nullptr, nullptr, 0, nullptr, &bytes));
+  is_null("memory", ist_tree_to_memory(tree_, nullptr, 1, nullptr, &bytes));
+  is_null("bytes", ist_tree_to_memory(tree_, nullptr, 0, nullptr, nullptr));
+  is_null("memory", ist_tree_from_memory(nullptr, 1, nullptr, &no_tree_));
+  is_null("tree", ist_tree_from_memory(corners, 1, nullptr, nullptr));
   is_null("tree", ist_tree_get_mesh(nullptr, &no_mesh_));
   is_null("mesh", ist_tree_get_mesh(tree_, nullptr));
   is_null("mesh", ist_jaw_create(IST_JAW_LOWER, 1, nullptr));
@@ -138,7 +125,8 @@ TEST_F(CMisuse, OfAHandleIsTold) {
   const double* pose = pose_.data();
   std::uint64_t memory_bytes = 0;
   const std::vector<Taker> takers{
-      {kMesh, [&](void* h) { return ist_mesh_get_info(static_cast<ist_mesh*>(h), &mesh_info_); }},
+      {kMesh,
+       [&](void* h) { return ist_mesh_get_info(static_cast<ist_mesh*>(h), nullptr, &mesh_info_); }},
       {kMesh,
        [&](void* h) { return ist_mesh_get_size(static_cast<ist_mesh*>(h), &count_, &count_); }},
       {kMesh,
@@ -147,7 +135,8 @@ TEST_F(CMisuse, OfAHandleIsTold) {
        [&](void* h) { return ist_mesh_copy(static_cast<ist_mesh*>(h), nullptr, 0, nullptr, 0); }},
       {kMesh, [&](void* h) { return ist_mesh_free(static_cast<ist_mesh*>(h)); }},
       {kTree, [&](void* h) { return ist_tree_get_info(static_cast<ist_tree*>(h), &tree_info_); }},
-      {kTree, [&](void* h) { return ist_tree_save(static_cast<ist_tree*>(h), file_.c_str()); }},
+      {kTree,
+       [&](void* h) { return ist_tree_save(static_cast<ist_tree*>(h), file_.c_str(), nullptr); }},
       {kTree,
        [&](void* h) {
          return ist_query_create(static_cast<ist_tree*>(h), tree_, nullptr, &no_query_);
@@ -160,7 +149,7 @@ TEST_F(CMisuse, OfAHandleIsTold) {
        [&](void* h) { return ist_tree_copy_leaf_centres(static_cast<ist_tree*>(h), nullptr, 0); }},
       {kTree,
        [&](void* h) {
-         return ist_tree_to_memory(static_cast<ist_tree*>(h), nullptr, 0, &memory_bytes);
+         return ist_tree_to_memory(static_cast<ist_tree*>(h), nullptr, 0, nullptr, &memory_bytes);
        }},
       {kTree, [&](void* h) { return ist_tree_get_mesh(static_cast<ist_tree*>(h), &no_mesh_); }},
       {kTree, [&](void* h) { return ist_tree_free(static_cast<ist_tree*>(h)); }},

@@ -95,7 +95,7 @@ TEST(CMesh, IsTheSameOfFloats) {
   ist_mesh* mesh = nullptr;
   ASSERT_EQ(name(ist_mesh_create_float(floats.data(), 3, triangle.data(), 1, &mesh)), "ok");
   auto info = sized<ist_mesh_info>();
-  ASSERT_EQ(name(ist_mesh_get_info(mesh, &info)), "ok");
+  ASSERT_EQ(name(ist_mesh_get_info(mesh, nullptr, &info)), "ok");
   EXPECT_EQ(info.box_max[0], double{1.3F});
   EXPECT_EQ(info.box_max[1], double{2.7F});
   EXPECT_EQ(info.box_max[2], double{0.4F});

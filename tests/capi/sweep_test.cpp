@@ -326,7 +326,7 @@ TEST_F(CSweep, AFullDiskIsAnUnwritableFile) {
 
 TEST_F(CSweep, HandlesOfOtherKindsAreRefused) {
   ist_tree* tree = nullptr;
-  ASSERT_EQ(name(ist_tree_load((dir_.path() / "fixed.ist").c_str(), &tree)), "ok");
+  ASSERT_EQ(name(ist_tree_load((dir_.path() / "fixed.ist").c_str(), nullptr, &tree)), "ok");
   EXPECT_EQ(name(ist_sweep_get_info(reinterpret_cast<ist_sweep*>(tree), &info_)), "handle-kind");
   EXPECT_EQ(name(ist_sweep_free(reinterpret_cast<ist_sweep*>(tree))), "handle-kind");
   ist_sweep* freed = open(kSoundSweep);

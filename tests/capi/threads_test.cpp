@@ -36,7 +36,7 @@ TEST(CThread, HasAMessageOfItsOwn) {
     EXPECT_STREQ(ist_last_error_message(), "");
     ist_mesh* mesh = nullptr;
     const std::string path = "/no/such/mesh" + std::to_string(i);
-    EXPECT_EQ(name(ist_mesh_read(path.c_str(), &mesh)), "file-unreadable");
+    EXPECT_EQ(name(ist_mesh_read(path.c_str(), nullptr, &mesh)), "file-unreadable");
     together.arrive_and_wait();
     messages[static_cast<std::size_t>(i)] = ist_last_error_message();
   });

@@ -21,9 +21,9 @@ namespace {
 
 std::vector<unsigned char> bytes_of(const ist_tree* tree) {
   std::uint64_t size = 0;
-  EXPECT_EQ(name(ist_tree_to_memory(tree, nullptr, 0, &size)), "ok");
+  EXPECT_EQ(name(ist_tree_to_memory(tree, nullptr, 0, nullptr, &size)), "ok");
   std::vector<unsigned char> bytes(size);
-  EXPECT_EQ(name(ist_tree_to_memory(tree, bytes.data(), bytes.size(), &size)), "ok");
+  EXPECT_EQ(name(ist_tree_to_memory(tree, bytes.data(), bytes.size(), nullptr, &size)), "ok");
   EXPECT_EQ(size, bytes.size());
   return bytes;
 }
@@ -32,14 +32,14 @@ TEST(CTreeInMemory, HasTheBytesOfItsFile) {
   ist_tree* tree = c_tree(icosphere(3, 2), 0.2);
   const TempDir folder;
   const std::string file = (folder.path() / "a.ist").string();
-  ASSERT_EQ(name(ist_tree_save(tree, file.c_str())), "ok");
+  ASSERT_EQ(name(ist_tree_save(tree, file.c_str(), nullptr)), "ok");
   const std::vector<unsigned char> bytes = bytes_of(tree);
   std::ifstream stream(file, std::ios::binary);
   const std::string saved(std::istreambuf_iterator<char>(stream), {});
   EXPECT_EQ(std::string(bytes.begin(), bytes.end()), saved);
 
   ist_tree* back = nullptr;
-  ASSERT_EQ(name(ist_tree_from_memory(bytes.data(), bytes.size(), &back)), "ok");
+  ASSERT_EQ(name(ist_tree_from_memory(bytes.data(), bytes.size(), nullptr, &back)), "ok");
   EXPECT_EQ(bytes_of(back), bytes);
   EXPECT_EQ(name(ist_tree_free(back)), "ok");
   EXPECT_EQ(name(ist_tree_free(tree)), "ok");
@@ -49,7 +49,7 @@ TEST(CTreeInMemory, LeavesAMemoryThatIsTooSmallAsItIs) {
   ist_tree* tree = c_tree(icosphere(1, 2), 0.5);
   std::vector<unsigned char> memory(bytes_of(tree).size() - 1, 7);
   std::uint64_t size = 0;
-  EXPECT_EQ(name(ist_tree_to_memory(tree, memory.data(), memory.size(), &size)), "ok");
+  EXPECT_EQ(name(ist_tree_to_memory(tree, memory.data(), memory.size(), nullptr, &size)), "ok");
   EXPECT_EQ(size, memory.size() + 1);
   EXPECT_EQ(memory, std::vector<unsigned char>(memory.size(), 7));
   EXPECT_EQ(name(ist_tree_free(tree)), "ok");
@@ -60,7 +60,8 @@ TEST(CTreeInMemory, IsRefusedWhereItIsDamaged) {
   const std::vector<unsigned char> bytes = bytes_of(tree);
   ist_tree* back = nullptr;
   const auto read = [&](const std::vector<unsigned char>& given) {
-    const std::string status = name(ist_tree_from_memory(given.data(), given.size(), &back));
+    const std::string status =
+        name(ist_tree_from_memory(given.data(), given.size(), nullptr, &back));
     EXPECT_EQ(back, nullptr);
     return status;
   };
@@ -84,7 +85,7 @@ TEST(CTreeInMemory, IsRefusedWhereItIsDamaged) {
     EXPECT_TRUE(status == "tree-corrupt" || status == "tree-truncated") << at << ": " << status;
   }
   EXPECT_NE(std::string(ist_last_error_message()).find("the bytes of a tree"), std::string::npos);
-  EXPECT_EQ(name(ist_tree_from_memory(nullptr, 5, &back)), "null-argument");
+  EXPECT_EQ(name(ist_tree_from_memory(nullptr, 5, nullptr, &back)), "null-argument");
   EXPECT_EQ(name(ist_tree_free(tree)), "ok");
 }
 
@@ -166,33 +167,32 @@ TEST(CFiles, AreFollowedAndEndWhereTheCallerSaysSo) {
   Listener listener;
   const auto progress = sized<ist_progress>({0, Listener::hear, &listener});
   ist_mesh* mesh = nullptr;
-  ASSERT_EQ(name(ist_mesh_read_with_progress(stl.c_str(), &progress, &mesh)), "ok");
+  ASSERT_EQ(name(ist_mesh_read(stl.c_str(), &progress, &mesh)), "ok");
   EXPECT_GE(listener.reports, 2);
   auto options = sized<ist_build_options>();
   options.voxel_size = 0.1;
   ist_tree *tree = nullptr, *back = nullptr;
   ASSERT_EQ(name(ist_tree_build(mesh, &options, &tree)), "ok");
-  ASSERT_EQ(name(ist_tree_save_with_progress(tree, ist.c_str(), &progress)), "ok");
-  ASSERT_EQ(name(ist_tree_load_with_progress(ist.c_str(), &progress, &back)), "ok");
+  ASSERT_EQ(name(ist_tree_save(tree, ist.c_str(), &progress)), "ok");
+  ASSERT_EQ(name(ist_tree_load(ist.c_str(), &progress, &back)), "ok");
   EXPECT_EQ(bytes_of(back), bytes_of(tree));
   EXPECT_EQ(name(ist_tree_free(back)), "ok");
   EXPECT_EQ(name(ist_mesh_free(mesh)), "ok");
   const std::string saved = file_content(ist);
   for (const int at : {1, 2}) {
     listener = {.stop_at = at};
-    EXPECT_EQ(name(ist_mesh_read_with_progress(stl.c_str(), &progress, &mesh)), "cancelled");
+    EXPECT_EQ(name(ist_mesh_read(stl.c_str(), &progress, &mesh)), "cancelled");
     EXPECT_EQ(mesh, nullptr);
     EXPECT_EQ(listener.reports, at);
   }
   listener = {.stop_at = 1};
-  EXPECT_EQ(name(ist_tree_load_with_progress(ist.c_str(), &progress, &back)), "cancelled");
+  EXPECT_EQ(name(ist_tree_load(ist.c_str(), &progress, &back)), "cancelled");
   EXPECT_EQ(back, nullptr);
   listener = {.stop_at = 1};
-  EXPECT_EQ(name(ist_tree_save_with_progress(tree, ist.c_str(), &progress)), "cancelled");
+  EXPECT_EQ(name(ist_tree_save(tree, ist.c_str(), &progress)), "cancelled");
   EXPECT_EQ(file_content(ist), saved);
   EXPECT_EQ(folder.entries(), 2u);
-  EXPECT_NE(std::string(ist_last_error_message()).find("ist_tree_save_with_progress"),
-            std::string::npos);
+  EXPECT_NE(std::string(ist_last_error_message()).find("ist_tree_save"), std::string::npos);
   EXPECT_EQ(name(ist_tree_free(tree)), "ok");
 }
 
@@ -206,11 +206,10 @@ TEST(CTreeInMemory, IsFollowedAndEndsWhereTheCallerSaysSo) {
   const auto progress = sized<ist_progress>({0, Listener::hear, &listener});
   std::uint64_t size = 0;
   const auto write = [&] {
-    return name(
-        ist_tree_to_memory_with_progress(tree, memory.data(), memory.size(), &progress, &size));
+    return name(ist_tree_to_memory(tree, memory.data(), memory.size(), &progress, &size));
   };
   const auto read = [&] {
-    return name(ist_tree_from_memory_with_progress(bytes.data(), bytes.size(), &progress, &back));
+    return name(ist_tree_from_memory(bytes.data(), bytes.size(), &progress, &back));
   };
   EXPECT_EQ(write(), "ok");
   EXPECT_EQ(size, bytes.size());
@@ -233,12 +232,10 @@ TEST(CTreeInMemory, IsFollowedAndEndsWhereTheCallerSaysSo) {
     EXPECT_EQ(back, nullptr);
     EXPECT_EQ(listener.reports, at);
   }
-  EXPECT_NE(std::string(ist_last_error_message()).find("ist_tree_from_memory_with_progress"),
-            std::string::npos);
+  EXPECT_NE(std::string(ist_last_error_message()).find("ist_tree_from_memory"), std::string::npos);
   // An error of the work reaches a caller who follows it.
   listener = {};
-  EXPECT_EQ(name(ist_tree_from_memory_with_progress(bytes.data(), 40, &progress, &back)),
-            "tree-truncated");
+  EXPECT_EQ(name(ist_tree_from_memory(bytes.data(), 40, &progress, &back)), "tree-truncated");
   EXPECT_EQ(name(ist_tree_free(tree)), "ok");
 }
 
@@ -246,15 +243,15 @@ TEST(CMeshCheck, IsFollowedAndEndsWhereTheCallerSaysSo) {
   const FrequentReports frequent;
   ist_mesh* mesh = c_mesh(icosphere(7, 10));
   auto wanted = sized<ist_mesh_info>(), info = wanted;
-  ASSERT_EQ(name(ist_mesh_get_info(mesh, &wanted)), "ok");
+  ASSERT_EQ(name(ist_mesh_get_info(mesh, nullptr, &wanted)), "ok");
   Listener listener;
   const auto progress = sized<ist_progress>({0, Listener::hear, &listener});
-  ASSERT_EQ(name(ist_mesh_get_info_with_progress(mesh, &progress, &info)), "ok");
+  ASSERT_EQ(name(ist_mesh_get_info(mesh, &progress, &info)), "ok");
   EXPECT_EQ(std::memcmp(&info, &wanted, sizeof info), 0);
   EXPECT_GE(listener.reports, 2);
   for (const int at : {1, 2}) {
     listener = {.stop_at = at};
-    EXPECT_EQ(name(ist_mesh_get_info_with_progress(mesh, &progress, &info)), "cancelled");
+    EXPECT_EQ(name(ist_mesh_get_info(mesh, &progress, &info)), "cancelled");
     EXPECT_EQ(info.triangles, 0u);
     EXPECT_EQ(listener.reports, at);
   }

@@ -67,7 +67,7 @@ TEST_F(CWorldPrepare, IsFollowedAndEndsWhereTheCallerSaysSo) {
   IST_SLOW();
   const FrequentReports frequent;
   const ist_body_pair first[] = {{0, 1}};
-  ASSERT_EQ(name(ist_world_prepare_with_progress(world_, first, 1, nullptr)), "ok");
+  ASSERT_EQ(name(ist_world_prepare(world_, first, 1, nullptr)), "ok");
   ask_contacts(nullptr);
   ASSERT_EQ(name(get_contacts()), "ok");
   const std::uint64_t before = bytes(), contacts = count_;
@@ -76,9 +76,7 @@ TEST_F(CWorldPrepare, IsFollowedAndEndsWhereTheCallerSaysSo) {
 
   Listener listener;
   const auto progress = sized<ist_progress>({0, Listener::hear, &listener});
-  const auto prepare = [&] {
-    return name(ist_world_prepare_with_progress(world_, nullptr, 0, &progress));
-  };
+  const auto prepare = [&] { return name(ist_world_prepare(world_, nullptr, 0, &progress)); };
   for (const int at : {1, 2, 3}) {
     listener = {.stop_at = at};
     EXPECT_EQ(prepare(), "cancelled");
@@ -92,7 +90,7 @@ TEST_F(CWorldPrepare, IsFollowedAndEndsWhereTheCallerSaysSo) {
     EXPECT_EQ(pairs_[0].status, IST_OK);
     EXPECT_EQ(pairs_[1].status, IST_NOT_PREPARED);
   }
-  EXPECT_NE(std::string(ist_last_error_message()).find("ist_world_prepare_with_progress: progress"),
+  EXPECT_NE(std::string(ist_last_error_message()).find("ist_world_prepare: progress"),
             std::string::npos);
 
   listener = {};
@@ -111,20 +109,20 @@ TEST_F(CWorldPrepare, TellsItsFollowerOfItsErrors) {
   Listener listener;
   auto progress = sized<ist_progress>({0, Listener::hear, &listener});
   const ist_body_pair wrong[] = {{0, kBodies}};
-  EXPECT_EQ(name(ist_world_prepare_with_progress(world_, wrong, 1, &progress)), "argument-invalid");
+  EXPECT_EQ(name(ist_world_prepare(world_, wrong, 1, &progress)), "argument-invalid");
   EXPECT_NE(std::string(ist_last_error_message()).find("body 30"), std::string::npos);
   const int reports = listener.reports;
   EXPECT_GE(reports, 1);
-  EXPECT_EQ(name(ist_world_prepare_with_progress(world_, nullptr, 2, &progress)), "null-argument");
-  EXPECT_EQ(name(ist_world_prepare_with_progress(nullptr, wrong, 1, &progress)), "null-argument");
+  EXPECT_EQ(name(ist_world_prepare(world_, nullptr, 2, &progress)), "null-argument");
+  EXPECT_EQ(name(ist_world_prepare(nullptr, wrong, 1, &progress)), "null-argument");
   progress.struct_size = 7;
-  EXPECT_EQ(name(ist_world_prepare_with_progress(world_, wrong, 1, &progress)), "struct-size");
+  EXPECT_EQ(name(ist_world_prepare(world_, wrong, 1, &progress)), "struct-size");
   EXPECT_EQ(listener.reports, reports);
 }
 
 TEST_F(CWorldPrepare, ARowTellsWhereABudgetEndedItsContacts) {
   const ist_body_pair first[] = {{0, 1}};
-  ASSERT_EQ(name(ist_world_prepare(world_, first, 1)), "ok");
+  ASSERT_EQ(name(ist_world_prepare(world_, first, 1, nullptr)), "ok");
   ask_contacts(nullptr);
   ASSERT_EQ(name(get_contacts()), "ok");
   EXPECT_EQ(pairs_[0].complete, 1);

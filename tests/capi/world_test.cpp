@@ -94,7 +94,7 @@ TEST_F(CWorld, GivesTheAnswersOfCpp) {
   std::uint64_t bytes = 0;
   ASSERT_EQ(name(ist_world_bytes_needed(world_, nullptr, 0, &bytes)), "ok");
   EXPECT_EQ(bytes, cpp_->bytes_needed());
-  ASSERT_EQ(name(ist_world_prepare(world_, nullptr, 0)), "ok");
+  ASSERT_EQ(name(ist_world_prepare(world_, nullptr, 0, nullptr)), "ok");
   cpp_->prepare();
   auto info = sized<ist_world_info>();
   ASSERT_EQ(name(ist_world_get_info(world_, &info)), "ok");
@@ -172,7 +172,7 @@ TEST_F(CWorld, GivesTheAnswersOfCpp) {
 }
 
 TEST_F(CWorld, GivesTheContactsOfCpp) {
-  ASSERT_EQ(name(ist_world_prepare(world_, nullptr, 0)), "ok");
+  ASSERT_EQ(name(ist_world_prepare(world_, nullptr, 0, nullptr)), "ok");
   cpp_->prepare();
   const auto felt = cpp_->ask({WorldQuestion::kContacts});
   std::uint64_t count = 0;
@@ -195,7 +195,7 @@ TEST_F(CWorld, GivesTheContactsOfCpp) {
 }
 
 TEST_F(CWorld, MovesBodiesAndTellsTheirPoses) {
-  ASSERT_EQ(name(ist_world_prepare(world_, nullptr, 0)), "ok");
+  ASSERT_EQ(name(ist_world_prepare(world_, nullptr, 0, nullptr)), "ok");
   EXPECT_EQ(name(ist_world_set_pose(world_, 1, c_shift(0, 30, 0).data())), "ok");
   double pose[16];
   ASSERT_EQ(name(ist_world_get_pose(world_, 0, 1, pose)), "ok");
@@ -230,7 +230,7 @@ TEST_F(CWorld, PreparesSomePairs) {
   ASSERT_EQ(name(ist_world_bytes_needed(world_, nullptr, 0, &all)), "ok");
   EXPECT_LT(one, all);
   EXPECT_EQ(name(ask(IST_ASK_INTERSECTS)), "not-prepared");
-  ASSERT_EQ(name(ist_world_prepare(world_, some, 1)), "ok");
+  ASSERT_EQ(name(ist_world_prepare(world_, some, 1, nullptr)), "ok");
   EXPECT_EQ(name(ist_world_ignore(world_, 2, 0)), "ok");
   question_.ask = IST_ASK_INTERSECTS;
   auto budget = sized<ist_budget>();
@@ -243,7 +243,7 @@ TEST_F(CWorld, PreparesSomePairs) {
   EXPECT_EQ(pairs_[0].status, IST_OK);
   EXPECT_EQ(pairs_[1].status, IST_NOT_PREPARED);
   // Some pairs, of which there are none: only the room for answers.
-  ASSERT_EQ(name(ist_world_prepare(world_, some, 0)), "ok");
+  ASSERT_EQ(name(ist_world_prepare(world_, some, 0, nullptr)), "ok");
   ASSERT_EQ(name(ask(IST_ASK_INTERSECTS)), "ok");
   EXPECT_EQ(pairs_[0].status, IST_NOT_PREPARED);
 }
@@ -293,7 +293,7 @@ TEST_F(CWorld, TellsWhatIsMisused) {
   for (const char* const each : {"first", "second"}) {
     ASSERT_EQ(name(ist_world_add(none, tree_, nullptr, each, &body)), "ok");
   }
-  expect(ist_world_prepare(none, nullptr, 0), "memory-limit", "'first' and 'second'");
+  expect(ist_world_prepare(none, nullptr, 0, nullptr), "memory-limit", "'first' and 'second'");
   EXPECT_EQ(name(ist_world_free(none)), "ok");
 }
 
@@ -316,8 +316,7 @@ TEST_F(CWorld, TellsOfPointersAndHandles) {
   is_null("body", ist_world_add(world_, tree_, nullptr, nullptr, nullptr));
   is_null("bytes", ist_world_bytes_needed(world_, nullptr, 0, nullptr));
   is_null("pairs", ist_world_bytes_needed(world_, nullptr, 2, &bytes));
-  is_null("pairs", ist_world_prepare(world_, nullptr, 2));
-  is_null("pairs", ist_world_prepare_with_progress(world_, nullptr, 2, nullptr));
+  is_null("pairs", ist_world_prepare(world_, nullptr, 2, nullptr));
   is_null("info", ist_world_get_info(world_, nullptr));
   is_null("pose", ist_world_set_pose(world_, 0, nullptr));
   is_null("pose", ist_world_get_pose(world_, 0, 1, nullptr));
@@ -332,8 +331,7 @@ TEST_F(CWorld, TellsOfPointersAndHandles) {
       [&](ist_world* w) { return ist_world_add(w, tree_, nullptr, nullptr, &body); },
       [&](ist_world* w) { return ist_world_ignore(w, 0, 1); },
       [&](ist_world* w) { return ist_world_bytes_needed(w, nullptr, 0, &bytes); },
-      [&](ist_world* w) { return ist_world_prepare(w, nullptr, 0); },
-      [&](ist_world* w) { return ist_world_prepare_with_progress(w, nullptr, 0, nullptr); },
+      [&](ist_world* w) { return ist_world_prepare(w, nullptr, 0, nullptr); },
       [&](ist_world* w) { return ist_world_get_info(w, &info); },
       [&](ist_world* w) { return ist_world_set_pose(w, 0, poses_[0].data()); },
       [&](ist_world* w) { return ist_world_get_pose(w, 0, 1, pose); },

@@ -90,7 +90,7 @@ TEST_P(FloatEnvironmentOfTheCInterface, ChangesNoMesh) {
                     fine(ist_jaw_create(IST_JAW_UPPER, 3, &jaw));
                     for (ist_mesh* each : {of_floats, of_doubles, jaw}) {
                       auto info = sized<ist_mesh_info>();
-                      fine(ist_mesh_get_info(each, &info));
+                      fine(ist_mesh_get_info(each, nullptr, &info));
                       say(info, record);
                       std::vector<double> copied(3 * info.vertices);
                       fine(ist_mesh_copy(each, copied.data(), info.vertices, nullptr, 0));
@@ -110,16 +110,16 @@ TEST_P(FloatEnvironmentOfTheCInterface, ChangesNoTree) {
     fine(ist_tree_copy_leaf_centres(tree, centres.data(), info.leaves));
     record.add(centres);
     std::uint64_t bytes = 0;
-    fine(ist_tree_to_memory(tree, nullptr, 0, &bytes));
+    fine(ist_tree_to_memory(tree, nullptr, 0, nullptr, &bytes));
     std::string file(bytes, '\0');
-    fine(ist_tree_to_memory(tree, file.data(), bytes, &bytes));
+    fine(ist_tree_to_memory(tree, file.data(), bytes, nullptr, &bytes));
     record.add(file);
     fine(ist_tree_free(tree));
-    fine(ist_tree_from_memory(file.data(), bytes, &tree));
+    fine(ist_tree_from_memory(file.data(), bytes, nullptr, &tree));
     ist_mesh* kept = nullptr;
     fine(ist_tree_get_mesh(tree, &kept));
     auto report = sized<ist_mesh_info>();
-    fine(ist_mesh_get_info(kept, &report));
+    fine(ist_mesh_get_info(kept, nullptr, &report));
     say(report, record);
     fine(ist_mesh_free(kept));
     fine(ist_tree_free(tree));
@@ -283,7 +283,7 @@ TEST_P(FloatEnvironmentOfTheCInterface, ChangesNoWorld) {
         fine(ist_world_add(world, fixed, poses_[2].data(), "large", &body));
         fine(ist_world_add(world, moving, poses_[0].data(), "small", &body));
         fine(ist_world_add(world, fixed, poses_[1].data(), "other", &body));
-        fine(ist_world_prepare(world, nullptr, 0));
+        fine(ist_world_prepare(world, nullptr, 0, nullptr));
         std::vector<ist_world_pair> pairs(8);
         auto result = sized<ist_world_result>();
         const auto say_all = [&](ist_status status) {

@@ -66,11 +66,10 @@ IST_C_API ist_status ist_mesh_create_float(const float* vertices, size_t vertex_
 /** Reads an STL, PLY, OBJ, OFF or VTK PolyData file, or by the program ist-import a glTF, 3MF,
  * COLLADA or FBX file and others, and merges vertices with equal coordinates.
  * Errors: IST_FILE_UNREADABLE, IST_NOT_A_MESH and all IST_MESH_... codes; the message names the
- * file and the position in it. Cost: about 50 ms for 100,000 triangles. */
-IST_C_API ist_status ist_mesh_read(const char* path, ist_mesh** mesh) IST_NOEXCEPT;
-/** Reads a mesh as ist_mesh_read does. `progress` may be NULL; IST_CANCELLED as it says. */
-IST_C_API ist_status ist_mesh_read_with_progress(const char* path, const ist_progress* progress,
-                                                 ist_mesh** mesh) IST_NOEXCEPT;
+ * file and the position in it; IST_CANCELLED. `progress` may be NULL. Cost: about 50 ms for
+ * 100,000 triangles. */
+IST_C_API ist_status ist_mesh_read(const char* path, const ist_progress* progress,
+                                   ist_mesh** mesh) IST_NOEXCEPT;
 
 /** Gives the numbers of vertices and triangles, for ist_mesh_copy. Cost: 1 us. */
 IST_C_API ist_status ist_mesh_get_size(const ist_mesh* mesh, uint64_t* vertices,
@@ -93,12 +92,10 @@ typedef struct ist_mesh_info {
   uint64_t self_intersections; /**< pairs of triangles that meet beyond what they share */
 } ist_mesh_info;
 
-/** Gives the size and the defects of a mesh. Cost: about 150 ms for 100,000 triangles. */
-IST_C_API ist_status ist_mesh_get_info(const ist_mesh* mesh, ist_mesh_info* info) IST_NOEXCEPT;
-/** Does what ist_mesh_get_info does. `progress` may be NULL; IST_CANCELLED as it says. */
-IST_C_API ist_status ist_mesh_get_info_with_progress(const ist_mesh* mesh,
-                                                     const ist_progress* progress,
-                                                     ist_mesh_info* info) IST_NOEXCEPT;
+/** Gives the size and the defects of a mesh. `progress` may be NULL. Errors: IST_CANCELLED. Cost:
+ * about 150 ms for 100,000 triangles. */
+IST_C_API ist_status ist_mesh_get_info(const ist_mesh* mesh, const ist_progress* progress,
+                                       ist_mesh_info* info) IST_NOEXCEPT;
 
 /** Copies the first `vertex_capacity` vertices, 3 coordinates each, and the first
  * `triangle_capacity` triangles, 3 indices each, in the order of the indices in answers. An array
@@ -159,36 +156,29 @@ typedef struct ist_build_options {
 IST_C_API ist_status ist_tree_build(const ist_mesh* mesh, const ist_build_options* options,
                                     ist_tree** tree) IST_NOEXCEPT;
 
-/** Reads a tree file and checks every number in it. Cost: 1 ns per byte. Errors:
- * IST_FILE_UNREADABLE, IST_NOT_A_TREE, IST_TREE_VERSION, IST_TREE_TRUNCATED, IST_TREE_CORRUPT. */
-IST_C_API ist_status ist_tree_load(const char* path, ist_tree** tree) IST_NOEXCEPT;
-/** Reads a tree as ist_tree_load does. `progress` may be NULL; IST_CANCELLED as it says. */
-IST_C_API ist_status ist_tree_load_with_progress(const char* path, const ist_progress* progress,
-                                                 ist_tree** tree) IST_NOEXCEPT;
+/** Reads a tree file and checks every number in it. `progress` may be NULL. Cost: 1 ns per byte.
+ * Errors: IST_FILE_UNREADABLE, IST_NOT_A_TREE, IST_TREE_VERSION, IST_TREE_TRUNCATED,
+ * IST_TREE_CORRUPT, IST_CANCELLED. */
+IST_C_API ist_status ist_tree_load(const char* path, const ist_progress* progress,
+                                   ist_tree** tree) IST_NOEXCEPT;
 
-/** Writes a tree file completely or not at all. Errors: IST_FILE_UNWRITABLE. Cost: disk time. */
-IST_C_API ist_status ist_tree_save(const ist_tree* tree, const char* path) IST_NOEXCEPT;
-/** Writes a tree as ist_tree_save does. `progress` may be NULL; IST_CANCELLED as it says, and an
- * older file stays. A file that already waits for the disk is completed, with IST_OK. */
-IST_C_API ist_status ist_tree_save_with_progress(const ist_tree* tree, const char* path,
-                                                 const ist_progress* progress) IST_NOEXCEPT;
+/** Writes a tree file completely or not at all. `progress` may be NULL. Errors:
+ * IST_FILE_UNWRITABLE; IST_CANCELLED, and an older file stays. A file that already waits for the
+ * disk is completed, with IST_OK. Cost: disk time. */
+IST_C_API ist_status ist_tree_save(const ist_tree* tree, const char* path,
+                                   const ist_progress* progress) IST_NOEXCEPT;
 
-/** Gives the size of the tree's file, and writes it to `memory` where `capacity` is no less;
- * `memory` may be NULL where `capacity` is 0. Cost: 1 ns per byte. */
+/** Gives the size of the tree's file, and writes it to `memory` if `capacity` is no less. `memory`
+ * may be NULL if `capacity` is 0; `progress` may be NULL. Errors: IST_CANCELLED. Cost: 1 ns per
+ * byte. */
 IST_C_API ist_status ist_tree_to_memory(const ist_tree* tree, void* memory, size_t capacity,
-                                        uint64_t* bytes) IST_NOEXCEPT;
-/** Does what ist_tree_to_memory does. `progress` may be NULL; IST_CANCELLED as it says. */
-IST_C_API ist_status ist_tree_to_memory_with_progress(const ist_tree* tree, void* memory,
-                                                      size_t capacity, const ist_progress* progress,
-                                                      uint64_t* bytes) IST_NOEXCEPT;
+                                        const ist_progress* progress, uint64_t* bytes) IST_NOEXCEPT;
 
-/** Reads a tree from its file's bytes, with the errors of ist_tree_load. They may go afterwards. */
+/** Reads a tree from its file's bytes, with the errors of ist_tree_load. The bytes may go
+ * afterwards. `progress` may be NULL. */
 IST_C_API ist_status ist_tree_from_memory(const void* memory, size_t bytes,
+                                          const ist_progress* progress,
                                           ist_tree** tree) IST_NOEXCEPT;
-/** Does what ist_tree_from_memory does. `progress` may be NULL; IST_CANCELLED as it says. */
-IST_C_API ist_status ist_tree_from_memory_with_progress(const void* memory, size_t bytes,
-                                                        const ist_progress* progress,
-                                                        ist_tree** tree) IST_NOEXCEPT;
 
 /** Creates a mesh from the triangles that a tree keeps, turned outward. Errors:
  * IST_TRIANGLES_MISSING. Cost: 10 ns per vertex and triangle. */

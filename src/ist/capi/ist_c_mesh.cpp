@@ -71,28 +71,6 @@ ist_status create(const char* function, const MeshArrays<Number>& arrays, ist_me
   });
 }
 
-ist_status check(const char* function, const ist_mesh* mesh, const ist_progress* progress,
-                 ist_mesh_info* info) noexcept {
-  return guarded(function, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_sized(call, "info", info)) return wrong;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
-    const Held<Mesh> held(call, "mesh", mesh);
-    if (held.status() != IST_OK) return held.status();
-    ist_mesh_info found{};
-    const bool whole = followed(follower, [&](const Proceed&) { found = mesh_info_of(*held); });
-    if (!whole) return cancelled(call);
-    write_sized(found, *info);
-    return IST_OK;
-  });
-}
-
-ist_status read(const char* function, const char* path, const ist_progress* progress,
-                ist_mesh** mesh) noexcept {
-  return read_object<Mesh>(function, path, progress, mesh,
-                           [](const char* file) { return Mesh{ist::read_mesh(file)}; });
-}
-
 }  // namespace
 }  // namespace ist::capi
 
@@ -111,22 +89,27 @@ ist_status ist_mesh_create_float(const float* vertices, size_t vertex_count,
                 mesh);
 }
 
-ist_status ist_mesh_read(const char* path, ist_mesh** mesh) IST_NOEXCEPT {
-  return read(__func__, path, nullptr, mesh);
+ist_status ist_mesh_read(const char* path, const ist_progress* progress,
+                         ist_mesh** mesh) IST_NOEXCEPT {
+  return read_object<Mesh>(__func__, path, progress, mesh,
+                           [](const char* file) { return Mesh{ist::read_mesh(file)}; });
 }
 
-ist_status ist_mesh_read_with_progress(const char* path, const ist_progress* progress,
-                                       ist_mesh** mesh) IST_NOEXCEPT {
-  return read(__func__, path, progress, mesh);
-}
-
-ist_status ist_mesh_get_info(const ist_mesh* mesh, ist_mesh_info* info) IST_NOEXCEPT {
-  return check(__func__, mesh, nullptr, info);
-}
-
-ist_status ist_mesh_get_info_with_progress(const ist_mesh* mesh, const ist_progress* progress,
-                                           ist_mesh_info* info) IST_NOEXCEPT {
-  return check(__func__, mesh, progress, info);
+ist_status ist_mesh_get_info(const ist_mesh* mesh, const ist_progress* progress,
+                             ist_mesh_info* info) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status wrong = clear_sized(call, "info", info)) return wrong;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    const Held<Mesh> held(call, "mesh", mesh);
+    if (held.status() != IST_OK) return held.status();
+    ist_mesh_info found{};
+    const bool whole =
+        followed(follower, [&](const ist::Proceed&) { found = mesh_info_of(*held); });
+    if (!whole) return cancelled(call);
+    write_sized(found, *info);
+    return IST_OK;
+  });
 }
 
 ist_status ist_mesh_get_size(const ist_mesh* mesh, uint64_t* vertices,

@@ -73,80 +73,6 @@ ist_tree_info tree_info_of(const Tree& object) {
   return info;
 }
 
-ist_status load(const char* function, const char* path, const ist_progress* progress,
-                ist_tree** tree) noexcept {
-  return read_object<Tree>(function, path, progress, tree,
-                           [](const char* file) { return ist::read_tree(file); });
-}
-
-ist_status save(const char* function, const ist_tree* tree, const char* path,
-                const ist_progress* progress) noexcept {
-  return guarded(function, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"path", path}})) return missing;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
-    const Held<Tree> held(call, "tree", tree);
-    if (held.status() != IST_OK) return held.status();
-    bool written = false;
-    followed(follower, [&](const Proceed&) {
-      ist::write_tree(*held->tree, path);
-      written = true;
-    });
-    // A caller who says stop while the file waits for the disk is too late.
-    return written ? IST_OK : cancelled(call);
-  });
-}
-
-// The memory of a caller that takes a tree's file, and where its size goes.
-struct TargetMemory {
-  void* memory;
-  std::size_t capacity;
-  std::uint64_t* bytes;
-};
-
-ist_status to_memory(const char* function, const ist_tree* tree, const TargetMemory& to,
-                     const ist_progress* progress) noexcept {
-  return guarded(function, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"bytes", to.bytes}})) return missing;
-    *to.bytes = 0;
-    if (const auto missing = call.need_array("memory", to.memory, to.capacity)) return missing;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
-    const Held<Tree> held(call, "tree", tree);
-    if (held.status() != IST_OK) return held.status();
-    std::vector<std::byte> file;
-    const bool whole =
-        followed(follower, [&](const Proceed&) { file = ist::tree_to_bytes(*held->tree); });
-    if (!whole) return cancelled(call);
-    *to.bytes = file.size();
-    if (to.capacity >= file.size()) std::memcpy(to.memory, file.data(), file.size());
-    return IST_OK;
-  });
-}
-
-// The memory of a caller that holds a tree's file.
-struct SourceMemory {
-  const void* memory;
-  std::size_t bytes;
-};
-
-ist_status from_memory(const char* function, const SourceMemory& from, const ist_progress* progress,
-                       ist_tree** tree) noexcept {
-  return guarded(function, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"tree", tree}})) return missing;
-    *tree = nullptr;
-    if (const auto missing = call.need_array("memory", from.memory, from.bytes)) return missing;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
-    std::unique_ptr<Tree> made;
-    const bool whole = followed(follower, [&](const Proceed&) {
-      made = std::make_unique<Tree>(
-          ist::tree_from_bytes({static_cast<const std::byte*>(from.memory), from.bytes}));
-    });
-    return whole ? give(call, std::move(made), tree) : cancelled(call);
-  });
-}
-
 }  // namespace
 }  // namespace ist::capi
 
@@ -172,43 +98,65 @@ ist_status ist_tree_build(const ist_mesh* mesh, const ist_build_options* options
   });
 }
 
-ist_status ist_tree_load(const char* path, ist_tree** tree) IST_NOEXCEPT {
-  return load(__func__, path, nullptr, tree);
+ist_status ist_tree_load(const char* path, const ist_progress* progress,
+                         ist_tree** tree) IST_NOEXCEPT {
+  return read_object<Tree>(__func__, path, progress, tree,
+                           [](const char* file) { return ist::read_tree(file); });
 }
 
-ist_status ist_tree_load_with_progress(const char* path, const ist_progress* progress,
-                                       ist_tree** tree) IST_NOEXCEPT {
-  return load(__func__, path, progress, tree);
-}
-
-ist_status ist_tree_save(const ist_tree* tree, const char* path) IST_NOEXCEPT {
-  return save(__func__, tree, path, nullptr);
-}
-
-ist_status ist_tree_save_with_progress(const ist_tree* tree, const char* path,
-                                       const ist_progress* progress) IST_NOEXCEPT {
-  return save(__func__, tree, path, progress);
+ist_status ist_tree_save(const ist_tree* tree, const char* path,
+                         const ist_progress* progress) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"path", path}})) return missing;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    const Held<Tree> held(call, "tree", tree);
+    if (held.status() != IST_OK) return held.status();
+    bool written = false;
+    followed(follower, [&](const ist::Proceed&) {
+      ist::write_tree(*held->tree, path);
+      written = true;
+    });
+    // A caller who says stop while the file waits for the disk is too late.
+    return written ? IST_OK : cancelled(call);
+  });
 }
 
 ist_status ist_tree_to_memory(const ist_tree* tree, void* memory, size_t capacity,
-                              uint64_t* bytes) IST_NOEXCEPT {
-  return to_memory(__func__, tree, {memory, capacity, bytes}, nullptr);
+                              const ist_progress* progress, uint64_t* bytes) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"bytes", bytes}})) return missing;
+    *bytes = 0;
+    if (const auto missing = call.need_array("memory", memory, capacity)) return missing;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    const Held<Tree> held(call, "tree", tree);
+    if (held.status() != IST_OK) return held.status();
+    std::vector<std::byte> file;
+    const bool whole =
+        followed(follower, [&](const ist::Proceed&) { file = ist::tree_to_bytes(*held->tree); });
+    if (!whole) return cancelled(call);
+    *bytes = file.size();
+    if (capacity >= file.size()) std::memcpy(memory, file.data(), file.size());
+    return IST_OK;
+  });
 }
 
-ist_status ist_tree_to_memory_with_progress(const ist_tree* tree, void* memory, size_t capacity,
-                                            const ist_progress* progress,
-                                            uint64_t* bytes) IST_NOEXCEPT {
-  return to_memory(__func__, tree, {memory, capacity, bytes}, progress);
-}
-
-ist_status ist_tree_from_memory(const void* memory, size_t bytes, ist_tree** tree) IST_NOEXCEPT {
-  return from_memory(__func__, {memory, bytes}, nullptr, tree);
-}
-
-ist_status ist_tree_from_memory_with_progress(const void* memory, size_t bytes,
-                                              const ist_progress* progress,
-                                              ist_tree** tree) IST_NOEXCEPT {
-  return from_memory(__func__, {memory, bytes}, progress, tree);
+ist_status ist_tree_from_memory(const void* memory, size_t bytes, const ist_progress* progress,
+                                ist_tree** tree) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"tree", tree}})) return missing;
+    *tree = nullptr;
+    if (const auto missing = call.need_array("memory", memory, bytes)) return missing;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    std::unique_ptr<Tree> made;
+    const bool whole = followed(follower, [&](const ist::Proceed&) {
+      made = std::make_unique<Tree>(
+          ist::tree_from_bytes({static_cast<const std::byte*>(memory), bytes}));
+    });
+    return whole ? give(call, std::move(made), tree) : cancelled(call);
+  });
 }
 
 ist_status ist_tree_get_mesh(const ist_tree* tree, ist_mesh** mesh) IST_NOEXCEPT {

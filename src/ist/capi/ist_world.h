@@ -59,17 +59,11 @@ IST_C_API ist_status ist_world_bytes_needed(ist_world* world, const ist_body_pai
 
 /** Reserves a query and contacts for `count` pairs, or with `pairs` NULL for all pairs that are not
  * ignored, and the room for answers. Pairs that had them and are among these keep them; others
- * lose them. Errors: IST_MEMORY_LIMIT, with the pair that is too much in the message;
- * IST_OUT_OF_MEMORY, IST_ARGUMENT_INVALID; the world is then as it was. Cost: 0.1 to 4 ms per pair.
- */
-IST_C_API ist_status ist_world_prepare(ist_world* world, const ist_body_pair* pairs,
-                                       size_t count) IST_NOEXCEPT;
-
-/** As ist_world_prepare, followed by the caller's function; `progress` may be NULL. Errors:
- * IST_CANCELLED too, and the world is then as it was. */
-IST_C_API ist_status ist_world_prepare_with_progress(ist_world* world, const ist_body_pair* pairs,
-                                                     size_t count,
-                                                     const ist_progress* progress) IST_NOEXCEPT;
+ * lose them. `progress` may be NULL. Errors: IST_MEMORY_LIMIT, and the message names the pair that
+ * is too much; IST_OUT_OF_MEMORY, IST_ARGUMENT_INVALID, IST_CANCELLED; the world is then as it was.
+ * Cost: 0.1 to 4 ms per pair. */
+IST_C_API ist_status ist_world_prepare(ist_world* world, const ist_body_pair* pairs, size_t count,
+                                       const ist_progress* progress) IST_NOEXCEPT;
 
 /** The size of a world. */
 typedef struct ist_world_info {

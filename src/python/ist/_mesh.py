@@ -45,7 +45,7 @@ def read(path, what, progress):
     """Returns the library's mesh of a file."""
     out = Out()
     with Follower(progress) as follower:
-        status = LIBRARY.ist_mesh_read_with_progress(path_bytes(path, what), follower.address, out.address)
+        status = LIBRARY.ist_mesh_read(path_bytes(path, what), follower.address, out.address)
         mesh = None if status else MeshHandle(out.handle)  # it owns the handle whatever finish() raises
         follower.finish(status)
     return mesh

@@ -94,7 +94,7 @@ class Tree(Handle):
         """
         with Follower(progress) as follower:
             follower.finish(
-                LIBRARY.ist_tree_save_with_progress(self._need(), path_bytes(path, "path"), follower.address)
+                LIBRARY.ist_tree_save(self._need(), path_bytes(path, "path"), follower.address)
             )
 
     def to_bytes(self, *, progress=None):
@@ -109,7 +109,7 @@ class Tree(Handle):
 
         def fill(memory, capacity):
             handle, place = self._need(), ctypes.addressof(size)
-            follower.finish(LIBRARY.ist_tree_to_memory_with_progress(handle, memory, capacity, follower.address, place))
+            follower.finish(LIBRARY.ist_tree_to_memory(handle, memory, capacity, follower.address, place))
 
         with Follower(progress) as follower:
             fill(None, 0)
@@ -207,11 +207,9 @@ def load(source, *, progress=None):
     with Follower(progress) as follower:
         if isinstance(source, (bytes, bytearray, memoryview)):
             memory = np.frombuffer(source, np.uint8)
-            status = LIBRARY.ist_tree_from_memory_with_progress(
-                address(memory), len(memory), follower.address, out.address
-            )
+            status = LIBRARY.ist_tree_from_memory(address(memory), len(memory), follower.address, out.address)
         else:
-            status = LIBRARY.ist_tree_load_with_progress(path_bytes(source, "source"), follower.address, out.address)
+            status = LIBRARY.ist_tree_load(path_bytes(source, "source"), follower.address, out.address)
         tree = None if status else Tree(out.handle)
         follower.finish(status)
     return tree

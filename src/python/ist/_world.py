@@ -156,7 +156,7 @@ class World(Lone):
         handle = self._enter()
         try:
             with Follower(progress) as follower:
-                status = LIBRARY.ist_world_prepare_with_progress(handle, place, count, follower.address)
+                status = LIBRARY.ist_world_prepare(handle, place, count, follower.address)
                 if status == 0:  # whatever finish() raises
                     self._prepared = self._all_pairs() if pairs is None else count
                 follower.finish(status)

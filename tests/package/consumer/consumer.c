@@ -54,7 +54,7 @@ int main(void) {
     require(result.leaf_pairs == overlapping(shift), "another count of leaf pairs");
     printf("shift %d: %llu leaf pairs\n", shift, (unsigned long long)result.leaf_pairs);
   }
-  require(ist_tree_load("no/such/file.ist", &tree) == IST_FILE_UNREADABLE, "another error");
+  require(ist_tree_load("no/such/file.ist", NULL, &tree) == IST_FILE_UNREADABLE, "another error");
   printf("error: %s\n", ist_last_error_message());
   return 0;
 }

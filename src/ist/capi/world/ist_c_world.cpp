@@ -33,25 +33,6 @@ std::optional<std::vector<BodyPair>> pairs_of(const ist_body_pair* pairs, std::s
   return made;
 }
 
-ist_status prepare(const char* function, ist_world* world, const ist_body_pair* pairs,
-                   std::size_t count, const ist_progress* progress) noexcept {
-  return guarded(function, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need_array("pairs", pairs, count)) return missing;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
-    const Held<WorldObject> held(call, "world", world);
-    if (held.status() != IST_OK) return held.status();
-    const auto some = pairs_of(pairs, count);
-    bool prepared = false;
-    followed(follower, [&](const Proceed& proceed) {
-      held->world.prepare(some, proceed);
-      prepared = true;
-    });
-    // A caller who says stop after the last pair is too late.
-    return prepared ? IST_OK : cancelled(call);
-  });
-}
-
 }  // namespace
 
 ist_status status_of_world(const Call& call, QueryStatus status, const double* pose) {
@@ -118,15 +99,23 @@ ist_status ist_world_bytes_needed(ist_world* world, const ist_body_pair* pairs, 
   });
 }
 
-ist_status ist_world_prepare(ist_world* world, const ist_body_pair* pairs,
-                             size_t count) IST_NOEXCEPT {
-  return prepare(__func__, world, pairs, count, nullptr);
-}
-
-ist_status ist_world_prepare_with_progress(ist_world* world, const ist_body_pair* pairs,
-                                           size_t count,
-                                           const ist_progress* progress) IST_NOEXCEPT {
-  return prepare(__func__, world, pairs, count, progress);
+ist_status ist_world_prepare(ist_world* world, const ist_body_pair* pairs, size_t count,
+                             const ist_progress* progress) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need_array("pairs", pairs, count)) return missing;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    const Held<WorldObject> held(call, "world", world);
+    if (held.status() != IST_OK) return held.status();
+    const auto some = pairs_of(pairs, count);
+    bool prepared = false;
+    followed(follower, [&](const ist::Proceed& proceed) {
+      held->world.prepare(some, proceed);
+      prepared = true;
+    });
+    // A caller who says stop after the last pair is too late.
+    return prepared ? IST_OK : cancelled(call);
+  });
 }
 
 ist_status ist_world_get_info(ist_world* world, ist_world_info* info) IST_NOEXCEPT {
