@@ -53,7 +53,7 @@ unsigned stages_of(const BuildOptions& options) {
 }
 
 ist_tree_info tree_info_of(const Tree& object) {
-  const SphereTree& tree = *object.tree;
+  const SphereTree& tree = object.tree;
   ist_tree_info info{};
   info.voxel_size = tree.voxel_size();
   info.leaves = tree.leaf_count();
@@ -92,7 +92,7 @@ ist_status ist_tree_build(const ist_mesh* mesh, const ist_build_options* options
     ist::Progress progress;
     std::unique_ptr<Tree> made;
     const bool whole = followed(follower, progress, stages_of(build), [&] {
-      made = std::make_unique<Tree>(ist::build_tree(held->mesh, build, nullptr, &progress));
+      made = std::make_unique<Tree>(Tree{ist::build_tree(held->mesh, build, nullptr, &progress)});
     });
     return whole ? give(call, std::move(made), tree) : cancelled(call);
   });
@@ -101,7 +101,7 @@ ist_status ist_tree_build(const ist_mesh* mesh, const ist_build_options* options
 ist_status ist_tree_load(const char* path, const ist_progress* progress,
                          ist_tree** tree) IST_NOEXCEPT {
   return read_object<Tree>(__func__, path, progress, tree,
-                           [](const char* file) { return ist::read_tree(file); });
+                           [](const char* file) { return Tree{ist::read_tree(file)}; });
 }
 
 ist_status ist_tree_save(const ist_tree* tree, const char* path,
@@ -114,7 +114,7 @@ ist_status ist_tree_save(const ist_tree* tree, const char* path,
     if (held.status() != IST_OK) return held.status();
     bool written = false;
     followed(follower, [&](const ist::Proceed&) {
-      ist::write_tree(*held->tree, path);
+      ist::write_tree(held->tree, path);
       written = true;
     });
     // A caller who says stop while the file waits for the disk is too late.
@@ -134,7 +134,7 @@ ist_status ist_tree_to_memory(const ist_tree* tree, void* memory, size_t capacit
     if (held.status() != IST_OK) return held.status();
     std::vector<std::byte> file;
     const bool whole =
-        followed(follower, [&](const ist::Proceed&) { file = ist::tree_to_bytes(*held->tree); });
+        followed(follower, [&](const ist::Proceed&) { file = ist::tree_to_bytes(held->tree); });
     if (!whole) return cancelled(call);
     *bytes = file.size();
     if (capacity >= file.size()) std::memcpy(memory, file.data(), file.size());
@@ -153,7 +153,7 @@ ist_status ist_tree_from_memory(const void* memory, size_t bytes, const ist_prog
     std::unique_ptr<Tree> made;
     const bool whole = followed(follower, [&](const ist::Proceed&) {
       made = std::make_unique<Tree>(
-          ist::tree_from_bytes({static_cast<const std::byte*>(memory), bytes}));
+          Tree{ist::tree_from_bytes({static_cast<const std::byte*>(memory), bytes})});
     });
     return whole ? give(call, std::move(made), tree) : cancelled(call);
   });
@@ -165,7 +165,7 @@ ist_status ist_tree_get_mesh(const ist_tree* tree, ist_mesh** mesh) IST_NOEXCEPT
     *mesh = nullptr;
     const Held<Tree> held(call, "tree", tree);
     if (held.status() != IST_OK) return held.status();
-    const ist::TriangleMesh* kept = held->tree->triangles();
+    const ist::TriangleMesh* kept = held->tree.triangles();
     if (kept == nullptr) {
       return call.fail(IST_TRIANGLES_MISSING, "the tree keeps no triangles: build it with them");
     }
@@ -179,7 +179,7 @@ ist_status ist_tree_self_intersections(const ist_tree* tree, uint64_t* pairs) IS
     *pairs = 0;
     const Held<Tree> held(call, "tree", tree);
     if (held.status() != IST_OK) return held.status();
-    *pairs = held->tree->self_intersections();
+    *pairs = held->tree.self_intersections();
     return IST_OK;
   });
 }
@@ -194,7 +194,7 @@ ist_status ist_tree_copy_leaf_centres(const ist_tree* tree, double* centres,
     if (const auto missing = call.need_array("centres", centres, capacity)) return missing;
     const Held<Tree> held(call, "tree", tree);
     if (held.status() != IST_OK) return held.status();
-    const std::vector<Eigen::Vector3d> all = held->tree->leaf_centres();
+    const std::vector<Eigen::Vector3d> all = held->tree.leaf_centres();
     for (const Eigen::Vector3d& centre : std::span(all).first(std::min(capacity, all.size()))) {
       centres = std::copy_n(centre.data(), 3, centres);
     }

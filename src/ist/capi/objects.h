@@ -30,8 +30,7 @@ struct Tree {
   static constexpr HandleUse kUse = HandleUse::kShared;
   static constexpr const char* kName = "tree";
 
-  explicit Tree(SphereTree made) : tree(std::make_shared<const SphereTree>(std::move(made))) {}
-  std::shared_ptr<const SphereTree> tree;
+  SphereTree tree;
 };
 
 struct QueryObject {
@@ -41,20 +40,15 @@ struct QueryObject {
   static constexpr const char* kName = "query";
 
   /// @param manifold_options empty: the query gives no contacts
-  QueryObject(std::shared_ptr<const SphereTree> fixed_tree,
-              std::shared_ptr<const SphereTree> moving_tree, const QueryOptions& options,
+  QueryObject(const SphereTree& fixed, const SphereTree& moving, const QueryOptions& options,
               const std::optional<ManifoldOptions>& manifold_options)
-      : fixed(std::move(fixed_tree)),
-        moving(std::move(moving_tree)),
-        query(*fixed, *moving, options),
-        query_options(options) {
+      : query(fixed, moving, options), query_options(options) {
     if (!manifold_options) return;
     contact_options = *manifold_options;
     max_contacts = manifold_options->points;
-    manifold.emplace(*fixed, *moving, query.policy(), *manifold_options);
+    manifold.emplace(fixed, moving, query.policy(), *manifold_options);
   }
 
-  std::shared_ptr<const SphereTree> fixed, moving;  // the query refers to them
   Query query;
   QueryOptions query_options;  // for further queries of the same bodies
   ManifoldOptions contact_options;

@@ -111,7 +111,7 @@ ist_status ist_tree_signed_distance(const ist_tree* tree, const double* points, 
     }
     std::vector<ist::SurfaceDistance> found;
     const bool whole = followed(follower, [&](const ist::Proceed& proceed) {
-      found = ist::signed_distance(*held->tree, at, reach, proceed);
+      found = ist::signed_distance(held->tree, at, reach, proceed);
     });
     if (!whole) return cancelled(call);
     std::transform(found.begin(), found.end(), distances, surface_distance_of);
@@ -136,10 +136,10 @@ ist_status ist_tree_distance_map(const ist_tree* body, const ist_tree* other, co
     if (held_body.status() != IST_OK) return held_body.status();
     const Held<Tree> held_other(call, "other", other);
     if (held_other.status() != IST_OK) return held_other.status();
-    const ist::SphereTree& of = *held_body->tree;
+    const ist::SphereTree& of = held_body->tree;
     std::vector<ist::SurfaceDistance> found;
     const bool whole = followed(follower, [&](const ist::Proceed& proceed) {
-      found = ist::distance_map(of, *held_other->tree, to_isometry(pose), reach, proceed);
+      found = ist::distance_map(of, held_other->tree, to_isometry(pose), reach, proceed);
     });
     if (!whole) return cancelled(call);
     *vertices = found.size();

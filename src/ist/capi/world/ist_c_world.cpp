@@ -71,7 +71,7 @@ ist_status ist_world_add(ist_world* world, const ist_tree* tree, const double po
     if (of_tree.status() != IST_OK) return of_tree.status();
     const Eigen::Isometry3d at =
         pose == nullptr ? Eigen::Isometry3d::Identity() : to_isometry(pose);
-    *body = held->world.add(*of_tree->tree, at, name == nullptr ? "" : name);
+    *body = held->world.add(of_tree->tree, at, name == nullptr ? "" : name);
     return IST_OK;
   });
 }
