@@ -10,6 +10,7 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tarfile
 
 from setuptools import Distribution, setup
@@ -49,6 +50,11 @@ def project():
 
 def version():
     return re.search(r"(?m)^project\(ist VERSION ([\d.]+)", (project() / "CMakeLists.txt").read_text())[1]
+
+
+def write_mirror():
+    """Writes the module with the structs, numbers and functions of the C headers."""
+    subprocess.run([sys.executable, project() / "src/ist/capi/c_mirrors.py", "python", HERE / "ist/_c.py"], check=True)
 
 
 def copy_licences(folder):
@@ -128,5 +134,6 @@ class WithLibrary(Distribution):
         return LIBRARY != "installed"
 
 
+write_mirror()
 setup(version=version(), distclass=WithLibrary,
       cmdclass={"build_py": BuildModules, "bdist_wheel": Wheel, "sdist": SourceDistribution})

@@ -1,215 +1,157 @@
-// NULL pointers and invalid handles, for every function that takes one.
+// NULL pointers and handles that are none, for every function that takes one.
 
-#include <functional>
-#include <vector>
+#include <array>
+#include <map>
+#include <string>
+#include <type_traits>
 
-#include "capi/misuse_case.h"
+#include "capi/c_bodies.h"
+#include "ist/capi/ist_measure.h"
+#include "ist/capi/ist_sweep.h"
+#include "ist/capi/ist_world.h"
+#include "support/shapes.h"
+#include "sweep/sweep_case.h"
 
 namespace ist::test {
 namespace {
+namespace calls {
 
-TEST_F(CMisuse, OfANullPointerIsToldByItsName) {
-  struct Case {
-    const char* argument;
-    ist_status status;
-    std::string message;
-  };
-  std::vector<Case> cases;
-  const auto is_null = [&](const char* argument, ist_status status) {
-    cases.push_back({argument, status, ist_last_error_message()});
-  };
-  const double* corners = corners_.data();
-  const std::uint32_t* indices = indices_.data();
-  const double* pose = pose_.data();
-  is_null("vertices", ist_mesh_create(nullptr, 3, indices, 1, &no_mesh_));
-  is_null("triangles", ist_mesh_create(corners, 3, nullptr, 1, &no_mesh_));
-  is_null("mesh", ist_mesh_create(corners, 3, indices, 1, nullptr));
-  is_null("vertices", ist_mesh_create_float(nullptr, 3, indices, 1, &no_mesh_));
-  is_null("triangles", ist_mesh_create_float(floats_.data(), 3, nullptr, 1, &no_mesh_));
-  is_null("mesh", ist_mesh_create_float(floats_.data(), 3, indices, 1, nullptr));
-  is_null("path", ist_mesh_read(nullptr, nullptr, &no_mesh_));
-  is_null("mesh", ist_mesh_read(file_.c_str(), nullptr, nullptr));
-  is_null("mesh", ist_mesh_get_info(nullptr, nullptr, &mesh_info_));
-  is_null("info", ist_mesh_get_info(mesh_, nullptr, nullptr));
-  is_null("mesh", ist_mesh_get_size(nullptr, &count_, &count_));
-  is_null("vertices", ist_mesh_get_size(mesh_, nullptr, &count_));
-  is_null("triangles", ist_mesh_get_size(mesh_, &count_, nullptr));
-  is_null("mesh", ist_mesh_copy(nullptr, nullptr, 0, nullptr, 0));
-  is_null("vertices", ist_mesh_copy(mesh_, nullptr, 1, nullptr, 0));
-  is_null("triangles", ist_mesh_copy(mesh_, nullptr, 0, nullptr, 1));
+/// One handle of each kind, and the path of no file.
+struct Sound {
+  ist_mesh* mesh = nullptr;
+  ist_tree* tree = nullptr;
+  ist_query* query = nullptr;
+  ist_servo* servo = nullptr;
+  ist_world* world = nullptr;
+  ist_sweep* sweep = nullptr;
+  const char* path = "";
+};
 
-  is_null("mesh", ist_tree_build(nullptr, &build_, &no_tree_));
-  is_null("options", ist_tree_build(mesh_, nullptr, &no_tree_));
-  is_null("tree", ist_tree_build(mesh_, &build_, nullptr));
-  is_null("path", ist_tree_load(nullptr, nullptr, &no_tree_));
-  is_null("tree", ist_tree_load(file_.c_str(), nullptr, nullptr));
-  is_null("tree", ist_tree_save(nullptr, file_.c_str(), nullptr));
-  is_null("path", ist_tree_save(tree_, nullptr, nullptr));
-  is_null("tree", ist_tree_get_info(nullptr, &tree_info_));
-  is_null("info", ist_tree_get_info(tree_, nullptr));
-  std::uint64_t bytes = 0;
-  is_null("tree", ist_tree_to_memory(nullptr, nullptr, 0, nullptr, &bytes));
-  is_null("memory", ist_tree_to_memory(tree_, nullptr, 1, nullptr, &bytes));
-  is_null("bytes", ist_tree_to_memory(tree_, nullptr, 0, nullptr, nullptr));
-  is_null("memory", ist_tree_from_memory(nullptr, 1, nullptr, &no_tree_));
-  is_null("tree", ist_tree_from_memory(corners, 1, nullptr, nullptr));
-  is_null("tree", ist_tree_get_mesh(nullptr, &no_mesh_));
-  is_null("mesh", ist_tree_get_mesh(tree_, nullptr));
-  is_null("mesh", ist_jaw_create(IST_JAW_LOWER, 1, nullptr));
-  is_null("tree", ist_tree_copy_leaf_centres(nullptr, nullptr, 0));
-  is_null("centres", ist_tree_copy_leaf_centres(tree_, nullptr, 1));
+/// A call with NULL in place of one argument.
+struct NullCall {
+  const char *function, *argument;
+  ist_status (*call)(const Sound& sound);
+};
 
-  is_null("fixed", ist_query_create(nullptr, tree_, nullptr, &no_query_));
-  is_null("moving", ist_query_create(tree_, nullptr, nullptr, &no_query_));
-  is_null("query", ist_query_create(tree_, tree_, nullptr, nullptr));
-  is_null("query", ist_query_get_info(nullptr, &query_info_));
-  is_null("info", ist_query_get_info(query_, nullptr));
-  is_null("query", ist_query_leaf_pairs(nullptr, pose, &budget_, leaf_pairs_, 4, &result_));
-  is_null("pose", ist_query_leaf_pairs(query_, nullptr, &budget_, leaf_pairs_, 4, &result_));
-  is_null("pairs", ist_query_leaf_pairs(query_, pose, &budget_, nullptr, 4, &result_));
-  is_null("result", ist_query_leaf_pairs(query_, pose, &budget_, leaf_pairs_, 4, nullptr));
-  const auto contacts = [&](ist_query* query, const double* at, ist_contact* out,
-                            ist_query_result* result) {
-    return ist_query_contacts(query, at, &budget_, out, 4, &sums_, result);
-  };
-  is_null("query", contacts(nullptr, pose, contacts_, &result_));
-  is_null("pose", contacts(query_, nullptr, contacts_, &result_));
-  is_null("contacts", contacts(query_, pose, nullptr, &result_));
-  is_null("result", contacts(query_, pose, contacts_, nullptr));
-  is_null("sums", ist_contact_sums_wrench(nullptr, 1, force_, torque_));
-  is_null("force", ist_contact_sums_wrench(&sums_, 1, nullptr, torque_));
-  is_null("torque", ist_contact_sums_wrench(&sums_, 1, force_, nullptr));
-  is_null("query", ist_query_distance(nullptr, pose, 0, nullptr, &distance_));
-  is_null("pose", ist_query_distance(query_, nullptr, 0, nullptr, &distance_));
-  is_null("result", ist_query_distance(query_, pose, 0, nullptr, nullptr));
-  is_null("query", ist_query_forget(nullptr));
-  is_null("pose", ist_rotation_error(nullptr, force_));
-  is_null("error", ist_rotation_error(pose, nullptr));
-  is_null("query", ist_query_intersects(nullptr, pose, nullptr, &answer_));
-  is_null("pose", ist_query_intersects(query_, nullptr, nullptr, &answer_));
-  is_null("answer", ist_query_intersects(query_, pose, nullptr, nullptr));
-  const auto triangles = [&](ist_query* query, const double* at, ist_triangle_pair* out,
-                             ist_triangle_pairs_result* result) {
-    return ist_query_triangle_pairs(query, at, nullptr, out, 4, result);
-  };
-  is_null("query", triangles(nullptr, pose, triangle_pairs_, &triangle_result_));
-  is_null("pose", triangles(query_, nullptr, triangle_pairs_, &triangle_result_));
-  is_null("pairs", triangles(query_, pose, nullptr, &triangle_result_));
-  is_null("result", triangles(query_, pose, triangle_pairs_, nullptr));
+/// A call with a handle of the caller in place of one argument, which is a handle of `kind`.
+struct HandleCall {
+  const char *function, *argument, *kind;
+  ist_status (*call)(const Sound& sound, void* handle);
+};
 
-  is_null("path", ist_servo_open_scene(nullptr, &servo_options_, &no_servo_));
-  is_null("options", ist_servo_open_scene(scene_.c_str(), nullptr, &no_servo_));
-  is_null("servo", ist_servo_open_scene(scene_.c_str(), &servo_options_, nullptr));
-  is_null("servo", ist_servo_get_info(nullptr, &servo_info_));
-  is_null("info", ist_servo_get_info(servo_, nullptr));
-  is_null("servo", ist_servo_on_tick(nullptr, pose, force_, torque_));
-  is_null("pose", ist_servo_on_tick(servo_, nullptr, force_, torque_));
-  is_null("force", ist_servo_on_tick(servo_, pose, nullptr, torque_));
-  is_null("torque", ist_servo_on_tick(servo_, pose, force_, nullptr));
-  for (const Case& c : cases) {
-    EXPECT_EQ(name(c.status), "null-argument") << c.message;
-    EXPECT_NE(c.message.find(std::string(": ") + c.argument + " is NULL"), std::string::npos)
-        << c.argument << " in: " << c.message;
+template <class T>
+T* some();
+// Sets the members of a struct that a function requires.
+template <class T>
+void complete(T&) {}
+void complete(ist_build_options& options) { options.voxel_size = 0.5; }
+void complete(ist_servo_options& options) { options.unit = IST_UNIT_MM; }
+void complete(ist_rows_options& options) { options.questions = IST_ASK_INTERSECTS; }
+void complete(ist_motion& motion) { motion.from = motion.to = some<double>(); }
+
+// Returns the memory of an argument: a pose, a struct with its size, or room for an answer.
+template <class T>
+T* some() {
+  static std::array<T, 16> memory;
+  memory = {};
+  if constexpr (std::is_same_v<T, double>) {
+    memory = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   }
-  EXPECT_EQ(ist_servo_warning(nullptr, 0), nullptr);
-  EXPECT_TRUE(!no_mesh_ && !no_tree_ && !no_query_ && !no_servo_);
+  if constexpr (requires { memory[0].struct_size; }) {
+    memory[0] = sized<T>();
+    complete(memory[0]);
+  }
+  return memory.data();
 }
 
-// Every handle argument, with invalid values, a handle of each other kind and a freed handle.
-TEST_F(CMisuse, OfAHandleIsTold) {
-  enum Kind { kMesh, kTree, kQuery, kServo };
-  struct Taker {
-    Kind kind;
-    std::function<ist_status(void*)> call;
-  };
-  const double* pose = pose_.data();
-  std::uint64_t memory_bytes = 0;
-  const std::vector<Taker> takers{
-      {kMesh,
-       [&](void* h) { return ist_mesh_get_info(static_cast<ist_mesh*>(h), nullptr, &mesh_info_); }},
-      {kMesh,
-       [&](void* h) { return ist_mesh_get_size(static_cast<ist_mesh*>(h), &count_, &count_); }},
-      {kMesh,
-       [&](void* h) { return ist_tree_build(static_cast<ist_mesh*>(h), &build_, &no_tree_); }},
-      {kMesh,
-       [&](void* h) { return ist_mesh_copy(static_cast<ist_mesh*>(h), nullptr, 0, nullptr, 0); }},
-      {kMesh, [&](void* h) { return ist_mesh_free(static_cast<ist_mesh*>(h)); }},
-      {kTree, [&](void* h) { return ist_tree_get_info(static_cast<ist_tree*>(h), &tree_info_); }},
-      {kTree,
-       [&](void* h) { return ist_tree_save(static_cast<ist_tree*>(h), file_.c_str(), nullptr); }},
-      {kTree,
-       [&](void* h) {
-         return ist_query_create(static_cast<ist_tree*>(h), tree_, nullptr, &no_query_);
-       }},
-      {kTree,
-       [&](void* h) {
-         return ist_query_create(tree_, static_cast<ist_tree*>(h), nullptr, &no_query_);
-       }},
-      {kTree,
-       [&](void* h) { return ist_tree_copy_leaf_centres(static_cast<ist_tree*>(h), nullptr, 0); }},
-      {kTree,
-       [&](void* h) {
-         return ist_tree_to_memory(static_cast<ist_tree*>(h), nullptr, 0, nullptr, &memory_bytes);
-       }},
-      {kTree, [&](void* h) { return ist_tree_get_mesh(static_cast<ist_tree*>(h), &no_mesh_); }},
-      {kTree, [&](void* h) { return ist_tree_free(static_cast<ist_tree*>(h)); }},
-      {kQuery,
-       [&](void* h) { return ist_query_get_info(static_cast<ist_query*>(h), &query_info_); }},
-      {kQuery,
-       [&](void* h) {
-         return ist_query_leaf_pairs(static_cast<ist_query*>(h), pose, &budget_, leaf_pairs_, 4,
-                                     &result_);
-       }},
-      {kQuery,
-       [&](void* h) {
-         return ist_query_contacts(static_cast<ist_query*>(h), pose, &budget_, contacts_, 4, &sums_,
-                                   &result_);
-       }},
-      {kQuery,
-       [&](void* h) {
-         return ist_query_distance(static_cast<ist_query*>(h), pose, 0, nullptr, &distance_);
-       }},
-      {kQuery,
-       [&](void* h) {
-         return ist_query_intersects(static_cast<ist_query*>(h), pose, nullptr, &answer_);
-       }},
-      {kQuery,
-       [&](void* h) {
-         return ist_query_triangle_pairs(static_cast<ist_query*>(h), pose, nullptr, triangle_pairs_,
-                                         4, &triangle_result_);
-       }},
-      {kQuery, [&](void* h) { return ist_query_forget(static_cast<ist_query*>(h)); }},
-      {kQuery, [&](void* h) { return ist_query_free(static_cast<ist_query*>(h)); }},
-      {kServo,
-       [&](void* h) { return ist_servo_get_info(static_cast<ist_servo*>(h), &servo_info_); }},
-      {kServo,
-       [&](void* h) {
-         return ist_servo_on_tick(static_cast<ist_servo*>(h), pose, force_, torque_);
-       }},
-      {kServo, [&](void* h) { return ist_servo_free(static_cast<ist_servo*>(h)); }},
-  };
-  const std::array<void*, 4> sound = {mesh_, tree_, query_, servo_};
-  ist_tree* tree = c_tree(box({0, 0, 0}, {2, 2, 2}), 0.5);
-  ist_servo* servo = nullptr;
-  ASSERT_EQ(name(ist_servo_open_scene(scene_.c_str(), &servo_options_, &servo)), "ok");
-  const std::array<void*, 4> freed = {c_mesh(box({0, 0, 0}, {1, 1, 1})), tree, c_query(tree),
-                                      servo};
-  EXPECT_EQ(name(ist_mesh_free(static_cast<ist_mesh*>(freed[kMesh]))), "ok");
-  EXPECT_EQ(name(ist_query_free(static_cast<ist_query*>(freed[kQuery]))), "ok");
-  EXPECT_EQ(name(ist_servo_free(servo)), "ok");
-  for (std::size_t i = 0; i < takers.size(); ++i) {
-    const Taker& taker = takers[i];
-    EXPECT_EQ(name(taker.call(freed[taker.kind])), "handle-freed") << i;
-    EXPECT_EQ(name(taker.call(&pose_)), "not-a-handle") << i;
-    EXPECT_EQ(name(taker.call(reinterpret_cast<void*>(std::uintptr_t{8}))), "not-a-handle") << i;
-    for (const Kind kind : {kMesh, kTree, kQuery, kServo}) {
-      if (kind == taker.kind) continue;
-      EXPECT_EQ(name(taker.call(sound[kind])), "handle-kind") << i << ", " << kind;
-      EXPECT_EQ(name(taker.call(freed[kind])), "handle-kind") << i << ", " << kind;
+#include "capi_calls.inc"
+
+}  // namespace calls
+
+class CMisuseOfCalls : public SweepTest {
+ protected:
+  CMisuseOfCalls() {
+    sound_ = made();
+    sound_.path = file_.c_str();
+  }
+  ~CMisuseOfCalls() override { free(sound_); }
+
+  [[nodiscard]] calls::Sound made() const {
+    calls::Sound all;
+    all.mesh = c_mesh(box({0, 0, 0}, {2, 2, 2}));
+    all.tree = c_tree(box({0, 0, 0}, {2, 2, 2}), 0.5);
+    all.query = c_query(c_tree(box({0, 0, 0}, {2, 2, 2}), 0.5));
+    auto options = sized<ist_servo_options>();
+    options.unit = IST_UNIT_MM;
+    const std::string scene = dir_.write("scene.toml", kSmallScene).string();
+    EXPECT_EQ(name(ist_servo_open_scene(scene.c_str(), &options, &all.servo)), "ok");
+    EXPECT_EQ(name(ist_world_create(nullptr, &all.world)), "ok");
+    const std::string sweep = dir_.write("job.toml", kSoundSweep).string();
+    EXPECT_EQ(name(ist_sweep_open(sweep.c_str(), nullptr, &all.sweep)), "ok")
+        << ist_last_error_message();
+    return all;
+  }
+  static void free(const calls::Sound& all) {
+    EXPECT_EQ(name(ist_sweep_free(all.sweep)), "ok");
+    EXPECT_EQ(name(ist_world_free(all.world)), "ok");
+    EXPECT_EQ(name(ist_servo_free(all.servo)), "ok");
+    EXPECT_EQ(name(ist_query_free(all.query)), "ok");
+    EXPECT_EQ(name(ist_tree_free(all.tree)), "ok");
+    EXPECT_EQ(name(ist_mesh_free(all.mesh)), "ok");
+  }
+  // The handles by the names of their kinds.
+  static std::map<std::string, void*> handles_of(const calls::Sound& all) {
+    return {{"mesh", all.mesh},   {"tree", all.tree},   {"query", all.query},
+            {"servo", all.servo}, {"world", all.world}, {"sweep", all.sweep}};
+  }
+  // Expects a status, and a message that begins with the function, the argument and `text`.
+  template <class Called>
+  static void expect(ist_status status, const char* code, const Called& called, const char* text) {
+    EXPECT_EQ(name(status), code) << called.function << ": " << called.argument;
+    const std::string message = ist_last_error_message();
+    const std::string wanted = std::string(called.function) + ": " + called.argument + text;
+    EXPECT_EQ(message.substr(0, wanted.size()), wanted);
+  }
+
+  const std::string file_ = (dir_.path() / "no.file").string();
+  calls::Sound sound_;
+};
+
+TEST_F(CMisuseOfCalls, OfANullPointerIsToldByItsName) {
+  for (const calls::NullCall& one : calls::kNullCalls) {
+    expect(one.call(sound_), "null-argument", one, " is NULL");
+  }
+  EXPECT_GT(std::size(calls::kNullCalls), 90u);
+  EXPECT_EQ(ist_servo_warning(nullptr, 0), nullptr);
+}
+
+// Every handle, replaced by NULL, by numbers that are no handles, by handles of each other kind
+// and by freed ones.
+TEST_F(CMisuseOfCalls, OfAHandleIsToldByItsName) {
+  const calls::Sound gone = made();
+  free(gone);
+  const auto sound = handles_of(sound_), freed = handles_of(gone);
+  for (const calls::HandleCall& one : calls::kHandleCalls) {
+    const auto call = [&](void* handle) { return one.call(sound_, handle); };
+    if (std::string(one.function).ends_with("_free")) {
+      EXPECT_EQ(name(call(nullptr)), "ok") << one.function;
+    } else {
+      expect(call(nullptr), "null-argument", one, " is NULL");
+    }
+    expect(call(&sound_), "not-a-handle", one, " is not a handle");
+    expect(call(reinterpret_cast<void*>(std::uintptr_t{8})), "not-a-handle", one,
+           " is not a handle");
+    for (const auto& [kind, handle] : freed) {
+      if (kind == one.kind) {
+        expect(call(handle), "handle-freed", one, " is a ");
+      } else {
+        expect(call(handle), "handle-kind", one, " is a handle of another kind");
+        expect(call(sound.at(kind)), "handle-kind", one, " is a handle of another kind");
+      }
     }
   }
-  EXPECT_EQ(ist_servo_warning(static_cast<ist_servo*>(freed[kServo]), 0), nullptr);
-  EXPECT_FALSE(no_tree_ || no_query_);
+  EXPECT_GT(std::size(calls::kHandleCalls), 50u);
+  EXPECT_EQ(ist_servo_warning(gone.servo, 0), nullptr);
 }
 
 }  // namespace

@@ -175,37 +175,6 @@ TEST_F(CSweep, EndsMidway) {
   EXPECT_EQ(name(ist_sweep_free(made)), "ok");
 }
 
-TEST_F(CSweep, RefusesNullByItsName) {
-  const std::string file = (dir_.path() / "job.toml").string();
-  ist_sweep* none = nullptr;
-  const auto is_null = [](const char* argument, ist_status status) {
-    EXPECT_EQ(name(status), "null-argument") << argument;
-    EXPECT_NE(std::string(ist_last_error_message()).find(std::string(": ") + argument + " is NULL"),
-              std::string::npos)
-        << ist_last_error_message();
-  };
-  is_null("path", ist_sweep_open(nullptr, nullptr, &none));
-  is_null("sweep", ist_sweep_open(file.c_str(), nullptr, nullptr));
-  is_null("sweep", ist_sweep_get_info(nullptr, &info_));
-  is_null("info", ist_sweep_get_info(sweep_, nullptr));
-  is_null("sweep", ist_sweep_get_column(nullptr, 0, &column_));
-  is_null("info", ist_sweep_get_column(sweep_, 0, nullptr));
-  is_null("sweep", ist_sweep_get_poses(nullptr, 0, 1, poses_.data()));
-  is_null("poses", ist_sweep_get_poses(sweep_, 0, 1, nullptr));
-  const char* out = folder_.c_str();
-  is_null("sweep", ist_sweep_run_part(nullptr, out, 0, 1, nullptr, &part_));
-  is_null("folder", ist_sweep_run_part(sweep_, nullptr, 0, 1, nullptr, &part_));
-  is_null("result", ist_sweep_run_part(sweep_, out, 0, 1, nullptr, nullptr));
-  is_null("sweep", ist_sweep_get_part(nullptr, out, 0, 0, &part_));
-  is_null("folder", ist_sweep_get_part(sweep_, nullptr, 0, 0, &part_));
-  is_null("result", ist_sweep_get_part(sweep_, out, 0, 0, nullptr));
-  is_null("sweep", ist_sweep_merge(nullptr, out, nullptr, &merged_));
-  is_null("folder", ist_sweep_merge(sweep_, nullptr, nullptr, &merged_));
-  is_null("result", ist_sweep_merge(sweep_, out, nullptr, nullptr));
-  EXPECT_EQ(name(ist_sweep_free(nullptr)), "ok");
-  EXPECT_FALSE(std::filesystem::exists(folder_));
-}
-
 TEST_F(CSweep, RefusesNumbersOutOfRange) {
   const char* out = folder_.c_str();
   const auto invalid = [](ist_status status, const char* said) {
@@ -322,22 +291,6 @@ TEST_F(CSweep, AFullDiskIsAnUnwritableFile) {
   std::filesystem::create_symlink("/dev/full", dir_.path() / "out" / "rows.npy");
   EXPECT_EQ(name(merge()), "file-unwritable");
   EXPECT_FALSE(std::filesystem::exists(dir_.path() / "out" / "manifest.json"));
-}
-
-TEST_F(CSweep, HandlesOfOtherKindsAreRefused) {
-  ist_tree* tree = nullptr;
-  ASSERT_EQ(name(ist_tree_load((dir_.path() / "fixed.ist").c_str(), nullptr, &tree)), "ok");
-  EXPECT_EQ(name(ist_sweep_get_info(reinterpret_cast<ist_sweep*>(tree), &info_)), "handle-kind");
-  EXPECT_EQ(name(ist_sweep_free(reinterpret_cast<ist_sweep*>(tree))), "handle-kind");
-  ist_sweep* freed = open(kSoundSweep);
-  EXPECT_EQ(name(ist_sweep_free(freed)), "ok");
-  EXPECT_EQ(name(ist_sweep_run_part(freed, folder_.c_str(), 0, 1, nullptr, &part_)),
-            "handle-freed");
-  EXPECT_EQ(name(ist_sweep_get_part(freed, folder_.c_str(), 0, 0, &part_)), "handle-freed");
-  EXPECT_EQ(name(ist_sweep_merge(freed, folder_.c_str(), nullptr, &merged_)), "handle-freed");
-  EXPECT_EQ(name(ist_sweep_get_poses(freed, 0, 1, poses_.data())), "handle-freed");
-  EXPECT_EQ(name(ist_sweep_free(freed)), "handle-freed");
-  EXPECT_EQ(name(ist_tree_free(tree)), "ok");
 }
 
 }  // namespace

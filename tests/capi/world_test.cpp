@@ -1,4 +1,4 @@
-// Worlds through the C interface: the answers of C++, and what is misused.
+// Worlds through the C interface: the answers of C++, and bad values.
 
 #include "ist/query/world/world.h"
 
@@ -7,7 +7,6 @@
 #include <cfloat>
 #include <cmath>
 #include <cstring>
-#include <functional>
 #include <vector>
 
 #include "capi/c_bodies.h"
@@ -295,63 +294,6 @@ TEST_F(CWorld, TellsWhatIsMisused) {
   }
   expect(ist_world_prepare(none, nullptr, 0, nullptr), "memory-limit", "'first' and 'second'");
   EXPECT_EQ(name(ist_world_free(none)), "ok");
-}
-
-// Every pointer that must not be NULL, and every function with handles that are none.
-TEST_F(CWorld, TellsOfPointersAndHandles) {
-  ist_world* none = nullptr;
-  std::uint32_t body = 0;
-  std::uint64_t bytes = 0;
-  double pose[16] = {};
-  auto info = sized<ist_world_info>();
-  auto least = sized<ist_least_distance>();
-  const auto is_null = [](const char* argument, ist_status status) {
-    EXPECT_EQ(name(status), "null-argument");
-    const std::string message = ist_last_error_message();
-    EXPECT_NE(message.find(std::string(": ") + argument + " is NULL"), std::string::npos)
-        << argument << " in: " << message;
-  };
-  is_null("world", ist_world_create(nullptr, nullptr));
-  is_null("tree", ist_world_add(world_, nullptr, nullptr, nullptr, &body));
-  is_null("body", ist_world_add(world_, tree_, nullptr, nullptr, nullptr));
-  is_null("bytes", ist_world_bytes_needed(world_, nullptr, 0, nullptr));
-  is_null("pairs", ist_world_bytes_needed(world_, nullptr, 2, &bytes));
-  is_null("pairs", ist_world_prepare(world_, nullptr, 2, nullptr));
-  is_null("info", ist_world_get_info(world_, nullptr));
-  is_null("pose", ist_world_set_pose(world_, 0, nullptr));
-  is_null("pose", ist_world_get_pose(world_, 0, 1, nullptr));
-  is_null("question", ist_world_ask(world_, nullptr, nullptr, pairs_, kRoom, &result_));
-  is_null("pairs", ist_world_ask(world_, &question_, nullptr, nullptr, 1, &result_));
-  is_null("result", ist_world_ask(world_, &question_, nullptr, pairs_, kRoom, nullptr));
-  is_null("count", ist_world_get_contacts(world_, 0, 1, nullptr, 0, nullptr, nullptr));
-  is_null("contacts", ist_world_get_contacts(world_, 0, 1, nullptr, 1, nullptr, &bytes));
-  is_null("result", ist_world_distance(world_, 1, nullptr, nullptr));
-
-  const std::vector<std::function<ist_status(ist_world*)>> takers = {
-      [&](ist_world* w) { return ist_world_add(w, tree_, nullptr, nullptr, &body); },
-      [&](ist_world* w) { return ist_world_ignore(w, 0, 1); },
-      [&](ist_world* w) { return ist_world_bytes_needed(w, nullptr, 0, &bytes); },
-      [&](ist_world* w) { return ist_world_prepare(w, nullptr, 0, nullptr); },
-      [&](ist_world* w) { return ist_world_get_info(w, &info); },
-      [&](ist_world* w) { return ist_world_set_pose(w, 0, poses_[0].data()); },
-      [&](ist_world* w) { return ist_world_get_pose(w, 0, 1, pose); },
-      [&](ist_world* w) { return ist_world_ask(w, &question_, nullptr, pairs_, kRoom, &result_); },
-      [&](ist_world* w) { return ist_world_get_contacts(w, 0, 1, nullptr, 0, nullptr, &bytes); },
-      [&](ist_world* w) { return ist_world_distance(w, 1, nullptr, &least); },
-      [&](ist_world* w) { return ist_world_forget(w); },
-  };
-  ist_world* freed = nullptr;
-  ASSERT_EQ(name(ist_world_create(nullptr, &freed)), "ok");
-  ASSERT_EQ(name(ist_world_free(freed)), "ok");
-  for (std::size_t k = 0; k < takers.size(); ++k) {
-    EXPECT_EQ(name(takers[k](nullptr)), "null-argument") << k;
-    EXPECT_EQ(name(takers[k](freed)), "handle-freed") << k;
-    EXPECT_EQ(name(takers[k](reinterpret_cast<ist_world*>(tree_))), "handle-kind") << k;
-    EXPECT_EQ(name(takers[k](reinterpret_cast<ist_world*>(&pairs_))), "not-a-handle") << k;
-  }
-  EXPECT_EQ(name(ist_world_free(freed)), "handle-freed");
-  EXPECT_EQ(name(ist_world_free(nullptr)), "ok");
-  EXPECT_EQ(none, nullptr);
 }
 
 }  // namespace

@@ -234,7 +234,7 @@ class Queries(Misuse):
         takes(np.empty(6, ist.LEAF_PAIR).view(np.recarray))
 
     def test_members_are_read_from_their_structs(self):
-        from ist import _records as records
+        from ist import _query as records
 
         for read, struct, names in (
             (records.read_leaf_pairs, records.QueryResult, "leaf_pairs written sphere_tests complete truncated level "
@@ -253,7 +253,7 @@ class Queries(Misuse):
 
     def test_a_question_asked_twice_has_one_time_limit(self):
         from ist._arrays import budget_of
-        from ist._records import QueryResult
+        from ist._c import QueryResult
 
         budget, limit = budget_of(0, 60.0)
         given, found = [], QueryResult(leaf_pairs=10_000)

@@ -77,9 +77,9 @@ typedef struct ist_penetration {
 } ist_penetration;
 
 /** Bounds the depth of the deepest point of either surface inside the other body by an interval no
- * wider than `tolerance`. `last` may be an earlier answer, from which the search goes on in less
- * time, or NULL. Of `budget` the tests are points; where it ends the search, `complete` is 0
- * and the interval wider. Without a budget, only `capped` ends it early. Errors: IST_POSE_INVALID,
+ * wider than `tolerance`. `last` may be NULL, or an earlier answer: from there the search goes on
+ * in less time. Of `budget` the tests are points; if it ends the search, `complete` is 0 and the
+ * interval wider. Without a budget, only `capped` ends it early. Errors: IST_POSE_INVALID,
  * IST_ARGUMENT_INVALID, IST_CANCELLED. Cost: 5 to 10 ms for jaws in occlusion. */
 IST_C_API ist_status ist_query_penetration(ist_query* query, const double pose[16],
                                            double tolerance, const ist_penetration* last,
@@ -190,8 +190,8 @@ typedef struct ist_occlusion {
 } ist_occlusion;
 
 /** Measures the occlusion of two bodies: distance maps, areas within limits, contact regions, for
- * each surface. `options`, and the arrays of a surface, may be NULL. Errors: IST_POSE_INVALID,
- * IST_ARGUMENT_INVALID, IST_MEMORY_LIMIT, IST_CANCELLED. Cost: 0.1 s for jaws. */
+ * each surface. `options`, `fixed_arrays` and `moving_arrays` may be NULL. Errors:
+ * IST_POSE_INVALID, IST_ARGUMENT_INVALID, IST_MEMORY_LIMIT, IST_CANCELLED. Cost: 0.1 s for jaws. */
 IST_C_API ist_status ist_query_occlusion(ist_query* query, const double pose[16],
                                          const ist_occlusion_options* options,
                                          const ist_progress* progress,

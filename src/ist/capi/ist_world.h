@@ -35,8 +35,9 @@ typedef struct ist_world_options {
 IST_C_API ist_status ist_world_create(const ist_world_options* options,
                                       ist_world** world) IST_NOEXCEPT;
 
-/** Adds a body; `body` takes its number, from 0 in the order of adding. `pose` may be NULL: where
- * the mesh is; `name`, for messages, too. The tree may be freed afterwards. The world is not
+/** Adds a body; `body` takes its number, from 0 in the order of adding. `pose` and `name` may be
+ * NULL: the body is then at its mesh's place, and messages name it by its number. The tree may be
+ * freed afterwards. The world is not
  * prepared then. Errors: IST_POLICY_MISSING, IST_POSE_INVALID; IST_ARGUMENT_INVALID beyond
  * IST_MOST_BODIES. */
 IST_C_API ist_status ist_world_add(ist_world* world, const ist_tree* tree, const double pose[16],
@@ -81,7 +82,7 @@ IST_C_API ist_status ist_world_set_pose(ist_world* world, uint32_t body,
                                         const double pose[16]) IST_NOEXCEPT;
 
 /** Gives the pose at which a pair is asked, from coordinates of `b` to those of `a`: a query of the
- * two trees at this pose has the pair's answers. Errors: IST_POSE_INVALID where one has no valid
+ * two trees at this pose has the pair's answers. Errors: IST_POSE_INVALID if one has no valid
  * pose. [real time] */
 IST_C_API ist_status ist_world_get_pose(ist_world* world, uint32_t a, uint32_t b,
                                         double pose[16]) IST_NOEXCEPT;
@@ -146,10 +147,10 @@ IST_C_API ist_status ist_world_ask(ist_world* world, const ist_world_question* q
 
 /** Copies the first `capacity` contacts of a pair, and its sums, from the last ist_world_ask
  * for IST_ASK_CONTACTS; `count` takes the number of all. Read the pair's ist_world_pair of that
- * call first: it alone tells whether the answer is complete. Where its `complete` is 0, a budget
- * ended the search, contacts and sums are those of a part of the leaf pairs, and no force.
- * Coordinates are those of the body added first. `contacts` may be NULL where `capacity` is 0;
- * `sums` may be NULL. Errors: IST_NOT_PREPARED where that call did not ask the pair. [real time] */
+ * call first: it alone tells whether the answer is complete. If its `complete` is 0, a budget
+ * ended the search: contacts and sums come from a part of the leaf pairs, and make no force.
+ * Coordinates belong to the body added first. `contacts` may be NULL if `capacity` is 0; `sums` may
+ * be NULL. Errors: IST_NOT_PREPARED if that call did not ask the pair. [real time] */
 IST_C_API ist_status ist_world_get_contacts(ist_world* world, uint32_t a, uint32_t b,
                                             ist_contact* contacts, size_t capacity,
                                             ist_contact_sums* sums, uint64_t* count) IST_NOEXCEPT;

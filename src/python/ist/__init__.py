@@ -29,6 +29,9 @@ from ._answers import (
     TrianglePairs,
     WorldAnswer,
 )
+from ._c import CONTACT, CONTACT_REGION, LEAF_PAIR, ROW, SURFACE_DISTANCE, TRIANGLE_PAIR, WORLD_PAIR
+from ._c import IST_ANSWER_NEAR as NEAR, IST_ANSWER_NO as NO, IST_ANSWER_UNKNOWN as UNKNOWN, IST_ANSWER_YES as YES
+from ._c import IST_NO_TRIANGLE as NO_TRIANGLE
 from ._errors import (
     NOT_PREPARED,
     POSE_INVALID,
@@ -45,16 +48,12 @@ from ._library import LIBRARY as _LIBRARY
 from ._measures import distance_map, rotation_error, signed_distance
 from ._mesh import jaws, read_mesh
 from ._query import Query
-from ._records import CONTACT, CONTACT_REGION, LEAF_PAIR, ROW, SURFACE_DISTANCE, TRIANGLE_PAIR, WORLD_PAIR
 from ._servo import Servo
 from ._sweep import Sweep
 from ._tree import Tree, build, load
 from ._world import World
 
 __version__ = _LIBRARY.ist_version_string().decode()
-
-NO_TRIANGLE = 0xFFFFFFFF
-UNKNOWN, NO, NEAR, YES = range(4)
 
 
 def occlusion(fixed, moving, pose=None, **options):

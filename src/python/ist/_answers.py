@@ -4,7 +4,7 @@ from typing import List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
-from ._records import CONTACT_SUMS
+from ._c import CONTACT_SUMS
 
 made = tuple.__new__  # made(LeafPairs, members): an answer, in half the time of LeafPairs(*members)
 

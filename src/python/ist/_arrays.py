@@ -8,8 +8,8 @@ import sys
 
 import numpy as np
 
+from ._c import Budget
 from ._errors import refuse
-from ._records import Budget
 
 
 _pointer = ctypes.c_void_p.from_address

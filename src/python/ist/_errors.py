@@ -1,5 +1,6 @@
 """The library's errors as Python's."""
 
+from . import _c
 from ._library import LIBRARY
 
 
@@ -34,23 +35,23 @@ class FreedError(Error, RuntimeError):
     """The object was freed."""
 
 
-NOT_PREPARED, TRIANGLES_MISSING, POSE_INVALID = 12, 118, 120
-FREED, BUSY, OUT_OF_MEMORY, CANCELLED, FILE_UNREADABLE, FILE_UNWRITABLE, MEMORY_LIMIT = 6, 7, 9, 14, 101, 102, 112
+NOT_PREPARED, TRIANGLES_MISSING, POSE_INVALID = _c.IST_NOT_PREPARED, _c.IST_TRIANGLES_MISSING, _c.IST_POSE_INVALID
+FREED, BUSY = _c.IST_HANDLE_FREED, _c.IST_HANDLE_BUSY
 KINDS = {
-    4: FreedError,
+    _c.IST_NOT_A_HANDLE: FreedError,
     FREED: FreedError,
     BUSY: BusyError,
-    8: Error,
-    OUT_OF_MEMORY: MemoryLimitError,
-    10: Error,
-    11: Error,
-    13: Error,
-    CANCELLED: Error,
-    15: ChangeRefused,
-    FILE_UNREADABLE: FileError,
-    FILE_UNWRITABLE: FileError,
-    MEMORY_LIMIT: MemoryLimitError,
-    124: BusyError,
+    _c.IST_TOO_MANY_HANDLES: Error,
+    _c.IST_OUT_OF_MEMORY: MemoryLimitError,
+    _c.IST_SYSTEM_ERROR: Error,
+    _c.IST_INTERNAL_ERROR: Error,
+    _c.IST_SERVO_FAULT: Error,
+    _c.IST_CANCELLED: Error,
+    _c.IST_CHANGE_REFUSED: ChangeRefused,
+    _c.IST_FILE_UNREADABLE: FileError,
+    _c.IST_FILE_UNWRITABLE: FileError,
+    _c.IST_MEMORY_LIMIT: MemoryLimitError,
+    _c.IST_PART_BUSY: BusyError,
 }
 
 
@@ -73,4 +74,4 @@ def check(status):
 
 def refuse(text):
     """Raises an InputError of this package's own: the argument never reached the library."""
-    raise error_of(3, text)
+    raise error_of(_c.IST_ARGUMENT_INVALID, text)

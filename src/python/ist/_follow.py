@@ -4,8 +4,8 @@ import ctypes
 import sys
 import threading
 
+from ._c import REPORT, Progress
 from ._errors import check
-from ._records import REPORT, Progress
 
 _hooks = threading.Lock()
 

@@ -4,86 +4,11 @@ import ctypes
 import os
 import pathlib
 
-from ctypes import c_char_p, c_double, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
+from ctypes import c_int32, c_uint32
 
-ABI_VERSION = 1
+from ._c import IST_ABI_VERSION as ABI_VERSION, PROTOTYPES
+
 SONAME = "libist.so.0"
-
-# Addresses are passed as numbers: ctypes converts these fastest.
-PROTOTYPES = {
-    "ist_abi_version": (c_uint32, []),
-    "ist_version_string": (c_char_p, []),
-    "ist_status_name": (c_char_p, [c_int32]),
-    "ist_last_error_message": (c_char_p, []),
-    "ist_mesh_create": (c_int32, [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p]),
-    "ist_mesh_create_float": (c_int32, [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p]),
-    "ist_mesh_read": (c_int32, [c_char_p, c_void_p, c_void_p]),
-    "ist_mesh_get_size": (c_int32, [c_void_p, c_void_p, c_void_p]),
-    "ist_mesh_copy": (c_int32, [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t]),
-    "ist_mesh_free": (c_int32, [c_void_p]),
-    "ist_jaw_create": (c_int32, [c_int32, c_uint64, c_void_p]),
-    "ist_tree_build": (c_int32, [c_void_p, c_void_p, c_void_p]),
-    "ist_tree_load": (c_int32, [c_char_p, c_void_p, c_void_p]),
-    "ist_tree_save": (c_int32, [c_void_p, c_char_p, c_void_p]),
-    "ist_tree_to_memory": (c_int32, [c_void_p, c_void_p, c_size_t, c_void_p, c_void_p]),
-    "ist_tree_from_memory": (c_int32, [c_void_p, c_size_t, c_void_p, c_void_p]),
-    "ist_tree_get_mesh": (c_int32, [c_void_p, c_void_p]),
-    "ist_tree_get_info": (c_int32, [c_void_p, c_void_p]),
-    "ist_tree_self_intersections": (c_int32, [c_void_p, c_void_p]),
-    "ist_tree_copy_leaf_centres": (c_int32, [c_void_p, c_void_p, c_size_t]),
-    "ist_tree_free": (c_int32, [c_void_p]),
-    "ist_query_create": (c_int32, [c_void_p, c_void_p, c_void_p, c_void_p]),
-    "ist_query_get_info": (c_int32, [c_void_p, c_void_p]),
-    "ist_rotation_error": (c_int32, [c_void_p, c_void_p]),
-    "ist_query_intersects": (c_int32, [c_void_p, c_void_p, c_void_p, c_void_p]),
-    "ist_query_leaf_pairs": (c_int32, [c_void_p, c_void_p, c_void_p, c_void_p, c_size_t, c_void_p]),
-    "ist_query_contacts": (c_int32, [c_void_p, c_void_p, c_void_p, c_void_p, c_size_t, c_void_p, c_void_p]),
-    "ist_query_distance": (c_int32, [c_void_p, c_void_p, c_double, c_void_p, c_void_p]),
-    "ist_query_triangle_pairs": (c_int32, [c_void_p, c_void_p, c_void_p, c_void_p, c_size_t, c_void_p]),
-    "ist_query_penetration": (c_int32, [c_void_p, c_void_p, c_double, c_void_p, c_void_p, c_void_p, c_void_p]),
-    "ist_query_first_contact": (c_int32, [c_void_p, c_void_p, c_double, c_void_p, c_void_p, c_void_p]),
-    "ist_query_occlusion": (
-        c_int32,
-        [c_void_p, c_void_p, c_void_p, c_void_p, c_void_p, c_void_p, c_void_p, c_void_p],
-    ),
-    "ist_query_rows": (c_int32, [c_void_p, c_void_p, c_size_t, c_void_p, c_void_p]),
-    "ist_query_forget": (c_int32, [c_void_p]),
-    "ist_query_free": (c_int32, [c_void_p]),
-    "ist_tree_signed_distance": (c_int32, [c_void_p, c_void_p, c_size_t, c_double, c_void_p, c_void_p]),
-    "ist_tree_distance_map": (
-        c_int32,
-        [c_void_p, c_void_p, c_void_p, c_double, c_void_p, c_void_p, c_size_t, c_void_p],
-    ),
-    "ist_servo_open_scene": (c_int32, [c_char_p, c_void_p, c_void_p]),
-    "ist_servo_warning": (c_char_p, [c_void_p, c_size_t]),
-    "ist_servo_get_info": (c_int32, [c_void_p, c_void_p]),
-    "ist_servo_on_tick": (c_int32, [c_void_p, c_void_p, c_void_p, c_void_p]),
-    "ist_servo_get_body": (c_int32, [c_void_p, c_size_t, c_void_p]),
-    "ist_servo_attach": (c_int32, [c_void_p, c_char_p]),
-    "ist_servo_release": (c_int32, [c_void_p, c_char_p]),
-    "ist_servo_free": (c_int32, [c_void_p]),
-    "ist_sweep_open": (c_int32, [c_char_p, c_void_p, c_void_p]),
-    "ist_sweep_get_info": (c_int32, [c_void_p, c_void_p]),
-    "ist_sweep_get_column": (c_int32, [c_void_p, c_uint64, c_void_p]),
-    "ist_sweep_get_poses": (c_int32, [c_void_p, c_uint64, c_size_t, c_void_p]),
-    "ist_sweep_run_part": (c_int32, [c_void_p, c_char_p, c_uint64, c_int32, c_void_p, c_void_p]),
-    "ist_sweep_get_part": (c_int32, [c_void_p, c_char_p, c_uint64, c_int32, c_void_p]),
-    "ist_sweep_merge": (c_int32, [c_void_p, c_char_p, c_void_p, c_void_p]),
-    "ist_sweep_free": (c_int32, [c_void_p]),
-    "ist_world_create": (c_int32, [c_void_p, c_void_p]),
-    "ist_world_add": (c_int32, [c_void_p, c_void_p, c_void_p, c_char_p, c_void_p]),
-    "ist_world_ignore": (c_int32, [c_void_p, c_uint32, c_uint32]),
-    "ist_world_bytes_needed": (c_int32, [c_void_p, c_void_p, c_size_t, c_void_p]),
-    "ist_world_prepare": (c_int32, [c_void_p, c_void_p, c_size_t, c_void_p]),
-    "ist_world_get_info": (c_int32, [c_void_p, c_void_p]),
-    "ist_world_set_pose": (c_int32, [c_void_p, c_uint32, c_void_p]),
-    "ist_world_get_pose": (c_int32, [c_void_p, c_uint32, c_uint32, c_void_p]),
-    "ist_world_ask": (c_int32, [c_void_p, c_void_p, c_void_p, c_void_p, c_size_t, c_void_p]),
-    "ist_world_get_contacts": (c_int32, [c_void_p, c_uint32, c_uint32, c_void_p, c_size_t, c_void_p, c_void_p]),
-    "ist_world_distance": (c_int32, [c_void_p, c_double, c_void_p, c_void_p]),
-    "ist_world_forget": (c_int32, [c_void_p]),
-    "ist_world_free": (c_int32, [c_void_p]),
-}
 
 
 def candidates():

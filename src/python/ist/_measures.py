@@ -6,29 +6,36 @@ from ctypes import addressof
 
 import numpy as np
 
+from . import _c
 from ._answers import BodyOcclusion, FirstContact, Occlusion, Penetration
 from ._arrays import address, budget_of, by_columns, count_of, floats, number_of, place_of, pose_of
-from ._errors import check, refuse
-from ._follow import Follower
-from ._library import LIBRARY
-from ._records import (
+from ._c import (
     CONTACT_REGION,
     ROW,
     SURFACE_DISTANCE,
-    FirstContactResult,
+    FirstContact as FirstContactResult,
     Motion,
     OcclusionArrays,
     OcclusionOptions,
-    OcclusionSums,
-    PenetrationResult,
+    Occlusion as OcclusionSums,
+    Penetration as PenetrationResult,
     RowsOptions,
 )
+from ._errors import check, refuse
+from ._follow import Follower
+from ._library import LIBRARY
 from ._tree import need_tree
 
 OUTCOMES = (None, "contact", "none", "grazing", "touches at start", "inside at start", "stopped")
 NOT_CLOSED = (None, "fixed", "moving")
 SELF_INTERSECTING = (None, "fixed", "moving", "both")
-QUESTIONS = {"intersects": 1, "leaf_pairs": 2, "distance": 4, "contacts": 8, "penetration": 16}
+QUESTIONS = {
+    "intersects": _c.IST_ASK_INTERSECTS,
+    "leaf_pairs": _c.IST_ASK_LEAF_PAIRS,
+    "distance": _c.IST_ASK_DISTANCE,
+    "contacts": _c.IST_ASK_CONTACTS,
+    "penetration": _c.IST_ASK_PENETRATION,
+}
 
 
 def penetration(self, pose, tolerance, *, last=None, points=0, seconds=0.0, progress=None):

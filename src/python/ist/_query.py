@@ -1,18 +1,17 @@
 """Queries: two trees, and the memory of their answers."""
 
+import struct
+import sys
 import time
 
-from ctypes import addressof, byref, c_double, c_int32, c_size_t, c_void_p
+from ctypes import addressof, byref, c_double, c_int32, c_size_t, c_uint64, c_void_p
 
 import numpy as np
 
 from . import _measures
 from ._answers import Contacts, Distance, LeafPairs, TrianglePairs, made
 from ._arrays import Room, address, budget_of, count_of, floats, number_of
-from ._errors import check, error_of, refuse
-from ._handle import Lone, Out
-from ._library import LIBRARY, bare
-from ._records import (
+from ._c import (
     CONTACT,
     LEAF_PAIR,
     TRIANGLE_PAIR,
@@ -22,17 +21,40 @@ from ._records import (
     QueryOptions,
     QueryResult,
     TrianglePairsResult,
-    read_contacts,
-    read_distance,
-    read_leaf_pairs,
-    read_triangle_pairs,
 )
+from ._errors import check, error_of, refuse
+from ._handle import Lone, Out
+from ._library import LIBRARY, bare
 from ._tree import SPHERES, need_tree, spheres_number
 
 _FLOAT64 = np.dtype(np.float64)
 _ANSWERS = (None, False, None, True)  # IST_ANSWER_UNKNOWN, NO, NEAR, YES
 _intersects, _leaf_pairs, _contacts = bare("ist_query_intersects"), bare("ist_query_leaf_pairs"), bare("ist_query_contacts")
 _distance, _triangle_pairs = bare("ist_query_distance"), bare("ist_query_triangle_pairs")
+_CODES = {c_double: "d", c_int32: "i", c_uint64: "Q"}
+_FLAG = "?3x" if sys.byteorder == "little" else "3x?"  # a c_int32 of 0 or 1: one byte is read as a bool
+
+
+def reader(record, members):
+    """Returns a function that reads members of a struct at once, in their order. A flag ends in ?."""
+    form, end, types = "=", 0, dict(record._fields_)
+    for member in members.split():
+        name = member.rstrip("?")
+        place = getattr(record, name)
+        gap = f"{place.offset - end}x" if place.offset > end else ""
+        form += gap + (_CODES[types[name]] if member == name else _FLAG)
+        end = place.offset + place.size
+    return struct.Struct(form).unpack_from
+
+
+read_leaf_pairs = reader(
+    QueryResult,
+    "leaf_pairs written sphere_tests complete? truncated? level distance_known? distance_lower distance_upper resolution "
+    "rotation_error",
+)
+read_contacts = reader(QueryResult, "leaf_pairs contacts written sphere_tests complete? rotation_error")
+read_distance = reader(DistanceResult, "lower upper sphere_tests complete? narrowest rotation_error")
+read_triangle_pairs = reader(TrianglePairsResult, "pairs written sphere_tests truncated? complete? rotation_error")
 
 
 def options_of(spheres, workers, contacts, margin, front_pairs, target):

@@ -6,12 +6,12 @@ import numpy as np
 
 from ._answers import ServoBody, ServoTick
 from ._arrays import address, by_columns, count_of, floats, number_of, place_of
+from ._c import ServoBody as ServoBodyInfo, ServoInfo, ServoOptions
 from ._errors import check, error_of, refuse
 from ._follow import Follower
 from ._handle import Lone, Out
 from ._library import LIBRARY
 from ._mesh import path_bytes
-from ._records import ServoBodyInfo, ServoInfo, ServoOptions
 
 UNITS = {"m": 1, "mm": 2}
 

@@ -10,12 +10,12 @@ import numpy as np
 
 from ._answers import SweepPart, SweepStatus, SweepTable
 from ._arrays import address, by_columns, count_of
+from ._c import SweepColumn, SweepInfo, SweepMergeResult, SweepPart as PartInfo
 from ._errors import check
 from ._follow import Follower
 from ._handle import Handle, Out
 from ._library import LIBRARY
 from ._mesh import path_bytes
-from ._sweep_records import ColumnInfo, MergeResult, PartInfo, SweepInfo
 
 COLUMN_TYPES = (None, "<u8", "<i4", "<f8")  # by the library's numbers
 MISSING, DONE, GIVEN_UP, DAMAGED = range(1, 5)
@@ -123,7 +123,7 @@ class Sweep(Handle):
         share that is done; if it raises an exception, the call ends with it. Raises InputError if a part is damaged. Cost: the
         time to read and write all rows.
         """
-        place, result = self._place(folder), MergeResult()
+        place, result = self._place(folder), SweepMergeResult()
         while True:
             with Follower(progress) as follower:
                 if self.parts and not begun(place):
@@ -170,7 +170,7 @@ class Sweep(Handle):
     def _read_columns(self):
         names, formats, offsets = [], [], []
         for column in range(self._info.columns):
-            info = ColumnInfo()
+            info = SweepColumn()
             check(LIBRARY.ist_sweep_get_column(self._need(), column, addressof(info)))
             names.append(info.name.decode())
             formats.append(COLUMN_TYPES[info.type])

@@ -5,12 +5,12 @@ import ctypes
 import numpy as np
 
 from ._arrays import address, count_of, number_of
+from ._c import BuildOptions, TreeInfo
 from ._errors import check, refuse
 from ._follow import Follower
 from ._handle import Handle, Out
 from ._library import LIBRARY
 from ._mesh import MeshHandle, handle_of, path_bytes
-from ._records import BuildOptions, TreeInfo
 
 SPHERES = ("default", "simple", "table", "tight", "slab")
 UNITS = ("unknown", "mm", "m", "inch", "µm")

@@ -4,36 +4,37 @@ from ctypes import addressof, c_uint32, c_uint64, pointer
 
 import numpy as np
 
+from . import _c
 from ._answers import Contacts, LeastDistance, WorldAnswer
 from ._arrays import address, budget_of, by_columns, count_of, number_of, place_of, pose_of
-from ._errors import check, error_of, refuse
-from ._follow import Follower
-from ._handle import Lone, Out
-from ._library import LIBRARY
-from ._query import options_of
-from ._records import (
+from ._c import (
     CONTACT,
     LEAF_PAIR,
     TRIANGLE_PAIR,
     WORLD_PAIR,
     ContactSums,
-    LeastDistanceResult,
+    LeastDistance as LeastDistanceResult,
     WorldInfo,
     WorldOptions,
     WorldQuestion,
     WorldResult,
 )
+from ._errors import check, error_of, refuse
+from ._follow import Follower
+from ._handle import Lone, Out
+from ._library import LIBRARY
+from ._query import options_of
 from ._tree import need_tree
 
 _ask = LIBRARY.ist_world_ask
-# The questions, by their names: the library's number, and the dtype of what is found.
+# The questions, by their names: the library's number, and the dtype of the pairs that it fills an array with.
 QUESTIONS = {
-    "near_pairs": (0, None),
-    "intersects": (1, None),
-    "leaf_pairs": (2, LEAF_PAIR),
-    "distances": (4, None),
-    "contacts": (8, None),
-    "triangle_pairs": (32, TRIANGLE_PAIR),
+    "near_pairs": (_c.IST_ASK_NEAR, None),
+    "intersects": (_c.IST_ASK_INTERSECTS, None),
+    "leaf_pairs": (_c.IST_ASK_LEAF_PAIRS, LEAF_PAIR),
+    "distances": (_c.IST_ASK_DISTANCE, None),
+    "contacts": (_c.IST_ASK_CONTACTS, None),
+    "triangle_pairs": (_c.IST_ASK_TRIANGLE_PAIRS, TRIANGLE_PAIR),
 }
 
 

@@ -6,7 +6,7 @@
 namespace ist::capi {
 namespace {
 
-// Returns the status of a pair, which is no error of the call.
+// Returns the status of a pair. It is no error of the call.
 ist_status status_of_pair(QueryStatus status) {
   switch (status) {
     case QueryStatus::kDone:

@@ -9,7 +9,7 @@ namespace {
 using detail::Use;
 using detail::WorldState;
 
-// The answer of a pair that was not asked: what the roots tell.
+// Returns the answer of a pair before its query is asked: the roots alone tell it.
 PairAnswer by_roots(const PairAtPose& at) noexcept {
   PairAnswer pair;
   pair.bodies = at.bodies;
@@ -48,7 +48,7 @@ void take_distance(const DistanceResult& result, PairAnswer& pair) noexcept {
   pair.narrowest = result.narrowest;
 }
 
-// Asks the query of a pair. `pair.first` is where the span of the question is free.
+// Asks the query of a pair. The span of the question is free from `pair.first` on.
 void ask_query(const WorldQuestion& question, Query& query, ContactManifold& manifold,
                const Eigen::Isometry3d& pose, const Budget& budget, PairAnswer& pair) noexcept {
   switch (question.kind) {
@@ -169,7 +169,7 @@ WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
   const double width = tolerance > 0 ? tolerance : 0;
   std::uint64_t spent = 0;
   for (PairAnswer& pair : pairs) {
-    // All pairs that are left are no nearer than this one's roots.
+    // No later pair is nearer than the roots of this one.
     const bool enough =
         pair.roots.lower > upper || upper - std::min(lower, pair.roots.lower) <= width;
     if (!enough && pair.status == QueryStatus::kDone && !budget.is_past()) {

@@ -62,7 +62,7 @@ struct WorldState {
   [[nodiscard]] std::vector<BodyPair> checked(std::span<const BodyPair> pairs) const;
   /// Returns all pairs that are not ignored, in their order.
   [[nodiscard]] std::vector<BodyPair> all_pairs() const;
-  /// Returns the pairs that one answer may list where so many are prepared.
+  /// Returns how many pairs one answer may list if so many are prepared.
   [[nodiscard]] std::size_t room_for(std::size_t prepared) const noexcept;
   /// Returns the bytes of the query and the manifold of a pair.
   [[nodiscard]] std::uint64_t bytes_of(BodyPair pair) const;
@@ -78,7 +78,7 @@ struct WorldState {
   [[nodiscard]] double rotation_error_of(BodyPair pair) const noexcept {
     return std::max(bodies[pair.a].rotation_error, bodies[pair.b].rotation_error);
   }
-  /// Returns the memory of two bodies in either order, or null where they have none.
+  /// Returns the memory of two bodies in either order, or null if they have none.
   [[nodiscard]] PairMemory* find(BodyIndex a, BodyIndex b) const noexcept {
     if (!is_there(a) || !is_there(b) || a == b) return nullptr;
     const std::uint32_t place = table[{std::min(a, b), std::max(a, b)}];
