@@ -64,7 +64,7 @@ struct WorldQuestion {
     kTrianglePairs,  ///< Query::triangle_pairs
     kDistance,       ///< Query::distance
   };
-  Kind kind = kNear;
+  Kind kind = kNear;     ///< the verb
   double tolerance = 0;  ///< of kDistance: the interval is to be no wider, mesh units
   /// Of kLeafPairs: takes the leaf pairs, sorted, of one pair of bodies after the other.
   std::span<LeafPair> leaf_pairs = {};
