@@ -21,11 +21,13 @@ found=$(grep -rnE '#include "ist/models/' src/ist/voxel src/ist/tree simd src/is
 # Headers for users include several layers. Angle brackets and paths upwards would hide a layer.
 found=$(grep -rnE '#include "ist/(ist|measure|haptics|scene)\.h"' src/ist simd | grep -vE '^src/ist/((ist|measure|haptics|scene)\.h|scene/|capi/)' || true)
 [ -z "$found" ] || breach "a layer includes a header of users: $found"
-found=$(grep -rnE '#include (<(ist|simd)/|"\.\./)' src/ist simd src/cli src/verify src/advise || true)
+found=$(grep -rnE '#include (<(ist|simd)/|"\.\./)' src/ist simd src/answers src/cli src/verify src/advise || true)
 [ -z "$found" ] || breach "an include that hides its layer: $found"
-found=$(grep -rnE '#include "(cli|advise)/' src/verify src/hardware; grep -rnE '#include "(cli|verify)/' src/advise || true)
+found=$(grep -rnE '#include "(answers|cli|advise)/' src/verify src/hardware; grep -rnE '#include "(answers|cli|verify)/' src/advise || true)
 [ -z "$found" ] || breach "tools know the library, not each other: $found"
-found=$(grep -rnE '#include "(cli|import|verify|advise|hardware)/|#include "ist/hardware/' src/ist simd || true)
+found=$(grep -rnE '#include "(cli|viewer)/' src/answers; grep -rnE '#include "cli/' src/viewer || true)
+[ -z "$found" ] || breach "the command and the page include the answers, and these none of both: $found"
+found=$(grep -rnE '#include "(answers|cli|import|verify|advise|hardware)/|#include "ist/hardware/' src/ist simd || true)
 [ -z "$found" ] || breach "the library sees no tool: $found"
 found=$(grep -rnE '#include "viewer/' src simd | grep -v '^src/viewer/' || true)
 [ -z "$found" ] || breach "the page stands behind all others: $found"
@@ -47,11 +49,11 @@ only "toml++" '#include [<"]toml' 'src/ist/scene/toml_document\.cpp' "src simd t
 only "GMP, an oracle of tests," '#include [<"]gmp' 'none' "src simd"
 only "xxHash" '#include [<"]xxh' 'src/(ist/base/checksum|hardware/xxh64)\.(h|cpp)' "src simd"
 only "zlib" '#include [<"]zlib' 'src/ist/mesh/format/inflate\.cpp' "src simd"
-only "libpng" '#include [<"]png\.h' 'src/cli/occlusion/png_image\.cpp' "src simd"
-only "JSON" '#include [<"]nlohmann/' 'src/(cli/.*|viewer/engine/.*|import/gltf_check\.cpp|ist/sweep/sweep_record\.cpp)' src
+only "libpng" '#include [<"]png\.h' 'src/cli/occlusion/map_picture\.cpp' "src simd"
+only "JSON" '#include [<"]nlohmann/' 'src/(answers/.*|cli/.*|viewer/engine/.*|import/gltf_check\.cpp|ist/sweep/sweep_record\.cpp)' src
 only "the command line" '#include [<"]CLI/' 'src/cli/.*' src
 only "a catch" '(^|[^[:alnum:]_])catch \(' 'src/(cli/main\.cpp|import/ist_import\.cpp|ist/base/platform/thread_ranges\.cpp|ist/scene/scene_trees\.cpp|ist/capi/guard\.(h|cpp)|viewer/engine/exports\.cpp)' "src --include=*.h --include=*.cpp"
-only "printing" '(std::cout|std::cerr|fmt::print|[^f]printf\()' 'src/ist/base/assert\.h' "src/ist simd"
+only "printing" '(std::cout|std::cerr|fmt::print|[^f]printf\()' 'src/ist/base/assert\.h' "src/ist src/answers simd"
 only "a sum whose order depends on the platform's vectors (base/ordered_vector.h has one order)" '\.(dot|norm|squaredNorm|normalized|normalize|stableNorm|inverse)\(' 'none' "src/ist/base src/ist/mesh src/ist/voxel src/ist/tree src/ist/query src/ist/measure src/ist/sweep simd"
 only "what a processor or a system decides" '__x86_64__|__aarch64__|__linux__|_mm_|prctl' 'src/ist/base/platform/.*' "src/ist simd"
 only "a function of libm, whose bits depend on the platform" 'std::(sin|cos|tan|asin|acos|atan2?|sinh|cosh|tanh|exp2?|log(2|10|1p)?|pow|cbrt|hypot|fma|erf|tgamma)f?\(' 'none' "src/ist/base src/ist/mesh src/ist/models src/ist/voxel src/ist/tree src/ist/query src/ist/measure src/ist/sweep simd"

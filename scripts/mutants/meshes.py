@@ -176,7 +176,7 @@ MUTANTS = [
            [("src/cli/interruption.cpp", "{SIGINT, SIGTERM, SIGHUP, SIGQUIT}", "{SIGINT, SIGTERM, SIGHUP}")],
            ["cli_test Interruption*"]),
     Mutant("flag-value-read", "a flag takes a value, as in --json=3",
-           [("src/cli/words.cpp", "->get_items_expected_max() > 0) continue;", "->get_items_expected_max() >= 0) continue;")],
+           [("src/cli/main.cpp", "->get_items_expected_max() > 0) continue;", "->get_items_expected_max() >= 0) continue;")],
            ["cli_test Usage*"]),
     Mutant("far-vertex-read", "a tree file may have triangles far outside its grid",
            [("src/ist/tree/tree_file.cpp", "return place.minCoeff() >= 0 && place.maxCoeff() <= lattice.cells;",

@@ -1,6 +1,6 @@
 """Faults in advice, the circuit, the C interface, the reports of an occlusion and the comparison of a working tree."""
 
-from .mutant import Mutant, ADVICE, CAPI, HARDWARE, OCCLUSION, CIRCUIT
+from .mutant import Mutant, ADVICE, BITES, CAPI, HARDWARE, OCCLUSION, CIRCUIT
 
 MUTANTS = [
     # Recommended voxel sizes.
@@ -64,8 +64,8 @@ MUTANTS = [
 
     # Reports of an occlusion.
     Mutant("bite-sides-swapped", "shares are of the other side",
-           [(OCCLUSION + "balance.cpp", "const double part = beyond > 0 ? 1", "const double part = beyond < 0 ? 1"),
-            (OCCLUSION + "balance.cpp", ": beyond < 0 ? 0", ": beyond > 0 ? 0")], ["occlusion_report_test Balance*"]),
+           [(BITES + "sides.cpp", "const double part = beyond > 0 ? 1", "const double part = beyond < 0 ? 1"),
+            (BITES + "sides.cpp", ": beyond < 0 ? 0", ": beyond > 0 ? 0")], ["occlusion_report_test Balance*"]),
     Mutant("bite-mirrored", "the moving body's picture is mirrored",
            [(OCCLUSION + "bite_view.cpp", "  moving.up = -fixed.up;\n", "")], ["occlusion_report_test BiteView*"]),
     Mutant("bite-wrong-sign-mapped", "a map is drawn over triangles of which one corner has a wrong sign",
@@ -79,13 +79,13 @@ MUTANTS = [
            [(OCCLUSION + "html/html_tables.cpp", "(contact.on_both() ? both : alone)", "(contact.area > 0 ? both : alone)")],
            ["occlusion_report_test BiteHtml*"]),
     Mutant("bite-numbers-of-regions", "each body numbers its contacts for itself",
-           [(OCCLUSION + "bite_contacts.cpp", "moving.contacts[k] = i + 1;", "moving.contacts[k] = k + 1;")],
+           [(BITES + "bite.cpp", "moving.contacts[k] = i + 1;", "moving.contacts[k] = k + 1;")],
            ["occlusion_report_test BiteHtml*:BiteContacts*"]),
     Mutant("bite-other-side-is-joint", "the other side of an arch counts as far from it",
-           [(OCCLUSION + "bite_hints.cpp", "constexpr double kOutOfPlane = 0.423;", "constexpr double kOutOfPlane = 0;")],
+           [(BITES + "bite_hints.cpp", "constexpr double kOutOfPlane = 0.423;", "constexpr double kOutOfPlane = 0;")],
            ["occlusion_report_test BiteHints*"]),
     Mutant("tooth-numbers-unchecked", "numbers of another system pass as teeth",
-           [(OCCLUSION + "labels/tooth_numbers.cpp", "tooth <= (quarter <= 4 ? 8 : 5)", "tooth <= 8")], ["labels_test LabelLines*"]),
+           [(BITES + "labels/tooth_labels.cpp", "tooth <= (quarter <= 4 ? 8 : 5)", "tooth <= 8")], ["labels_test LabelLines*"]),
 
     # The working tree beside HEAD.
     Mutant("try-forgets-lost-rows", "a change that loses a way of asking passes",

@@ -59,8 +59,8 @@ MUTANTS = [
            ["quiet_test Allocations.AWorldMakesNone"]),
     Mutant("least-distance-as-the-caller-rounds", "the least distance of a world is computed in the caller's arithmetic",
            [(WORLD + "world_answers.cpp", "Budget& budget) noexcept {\n  const ScopedFloatEnvironment environment;\n  WorldState& s = *state_;\n"
-             "  const WorldUse use(s);\n  if (!use) return {.status = QueryStatus::kBusy};\n",
+             "  const Use use(s);\n  if (!use) return {.status = QueryStatus::kBusy};\n",
              "Budget& budget) noexcept {\n  WorldState& s = *state_;\n"
-             "  const WorldUse use(s);\n  if (!use) return {.status = QueryStatus::kBusy};\n")],
+             "  const Use use(s);\n  if (!use) return {.status = QueryStatus::kBusy};\n")],
            ["stability_test *FloatEnvironmentOfAWorld*"]),
 ]

@@ -28,11 +28,11 @@ BEGINS = {
     "ist bench": ["src/cli/commands/bench.cpp", "src/advise/closing_path.cpp", "src/ist/models"],
     "mutate.sh": ["examples", "scripts/mutants", "scripts/report", "scripts/try.py", "simd", "src", "tests"],
     "stability_border.sh": ["bench/stability_border.cpp", "tests/haptics/wall_press.cpp"],
-    "stability_report.sh": ["simd", "src/cli", "src/ist", "src/verify",
+    "stability_report.sh": ["simd", "src/answers", "src/cli", "src/ist", "src/verify",
                             *(f"tests/{room}" for room in ("capi", "cli", "fuzz", "query", "scene", "simd", "stability", "support"))],
     "sweep_bench": ["bench/python/sweep_loop.py", "src/ist/capi", "src/python/ist"],
     "target_instructions.py": ["tests/instructions"],
-    "viewer_ratio.mjs": ["src/cli/engine.cpp", "src/viewer/engine/pair.cpp"],
+    "viewer_ratio.mjs": ["src/answers/engine.cpp", "src/viewer/engine/pair.cpp"],
 }
 # Those that no compiler of this project makes.
 UNCOMPILED = {"hardware_report.sh", "mutate.sh"}

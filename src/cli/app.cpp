@@ -5,11 +5,14 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "answers/version.h"
 #include "cli/commands/commands.h"
 #include "cli/exit_code.h"
-#include "cli/version.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 std::string exit_codes() {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -11,7 +13,7 @@ namespace ist::cli {
 /// Returns the values of --spheres.
 [[nodiscard]] std::vector<std::string> policy_names();
 
-/// Accepts one of `words` in any case, and spells it as they do. For Option::transform().
+/// Accepts one of `words` in any case, and takes their spelling. For Option::transform().
 [[nodiscard]] CLI::Validator one_of(const std::vector<std::string>& words);
 
 /// Accepts the name of a unit in any case. For Option::transform().
@@ -20,8 +22,19 @@ namespace ist::cli {
 /// Adds an example to the end of a subcommand's help, before the common footer.
 void add_example(CLI::App& command, const std::string& example);
 
-/// Adds --max-memory, bytes, of what it says.
+/// Adds --max-memory, bytes. `of` names the memory in the help.
 void add_max_memory(CLI::App& command, std::uint64_t& bytes,
                     const std::string& of = "voxels and tree");
+
+/// Throws a Refusal if `output` is one of the `inputs`.
+void refuse_to_overwrite(const std::filesystem::path& output,
+                         std::initializer_list<std::filesystem::path> inputs);
+
+/// Accepts only the decimal digits of a number below 2^64, which `what` names. CLI11 would read -1
+/// and too large numbers as the largest one, and 010 as 8.
+[[nodiscard]] CLI::Validator whole_number(const std::string& what);
+
+/// Accepts a finite number of mesh units from 0 on.
+[[nodiscard]] CLI::Validator tolerance();
 
 }  // namespace ist::cli

@@ -11,17 +11,20 @@
 #include <system_error>
 #include <utility>
 
+#include "answers/extents.h"
+#include "answers/json_parts.h"
+#include "answers/refusals.h"
 #include "cli/common_options.h"
-#include "cli/extents.h"
 #include "cli/progress_bar.h"
-#include "cli/refusals.h"
-#include "cli/source_file.h"
 #include "ist/base/error.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/mesh_source.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 // Refuses an option that names another unit than the file. To leave the option out is no remedy:
@@ -183,6 +186,13 @@ void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) {
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
   }
+}
+
+double default_voxel_size(double extent, const std::string& of) {
+  const double size = rounded_voxel_size(extent);
+  std::fprintf(stderr, "voxel size %s: 1/%.0f of %s; --voxel-size names another\n",
+               fmt::format("{:.3g}", size).c_str(), kVoxelsOfExtent, of.c_str());
+  return size;
 }
 
 SphereTree build_with_progress(const std::string& name, TriangleMesh mesh,

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/bodies.h"
+#include "answers/bodies.h"
 #include "cli/cli11_fwd.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/sphere_tree.h"
@@ -27,6 +27,10 @@ void print_warnings(const std::vector<std::string>& warnings);
 
 /// Returns a sentence without a full stop about the files whose surfaces have a border.
 [[nodiscard]] std::string open_surfaces(const std::vector<std::string>& names);
+
+/// Returns rounded_voxel_size() for bodies without a --voxel-size, and says so on stderr. `of`
+/// names the extent: "the largest extent".
+[[nodiscard]] double default_voxel_size(double extent, const std::string& of);
 
 /// Builds a tree under a progress bar. Adds a warning that begins with `name` if components were
 /// turned outward.
@@ -62,9 +66,9 @@ void add_units_and_frame(CLI::App& command, BodyFiles& files);
 ///
 /// Says on stderr if it takes a voxel size, converts or turns a mesh, if both files hold one mesh,
 /// if the bodies seem to be in different units, and if voxels are large for their body. Throws
-/// CLI::ValidationError for a voxel size of two trees, for a moving tree of another unit than the
+/// a Refusal for a voxel size of two trees, for a moving tree of another unit than the
 /// fixed body's, for a unit that a file contradicts, and for files in different frames.
-[[nodiscard]] Bodies load_bodies(const BodyFiles& files);
+[[nodiscard]] answers::Bodies load_bodies(const BodyFiles& files);
 
 /// Loads one body whose voxels nobody asks of: a mesh gets one as large as itself.
 [[nodiscard]] SphereTree load_body(const std::filesystem::path& file, std::uint64_t max_memory);

@@ -5,12 +5,15 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "answers/refusals.h"
 #include "cli/common_options.h"
-#include "cli/contacts/contact_file.h"
-#include "cli/refusals.h"
+#include "cli/contact_file.h"
 #include "simd/dispatch.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 void add_engine_options(CLI::App& command, QueryOptions& options) {

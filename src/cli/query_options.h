@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/answers/examiner.h"
+#include "answers/engine.h"
+#include "answers/examiner.h"
 #include "cli/cli11_fwd.h"
-#include "cli/engine.h"
 #include "cli/load_bodies.h"
 
 namespace ist::cli {
@@ -15,12 +15,12 @@ namespace ist::cli {
 struct QueryOptions {
   std::string subcommand;  ///< whose options they are
   BodyFiles files;
-  Questions questions;
+  answers::Questions questions;
   std::filesystem::path contacts;  ///< file for leaf pairs and contacts; empty: not written
   bool fail_if_touching = false;
   bool json = false;
 
-  // Of the engine.
+  // The engine.
   std::string spheres;               ///< empty: the tightest that both bodies have
   std::vector<std::string> engines;  ///< as named; empty: the first of kEngineNames
   std::string target;                ///< instruction set; empty: IST_TARGET's, or the best
@@ -29,14 +29,14 @@ struct QueryOptions {
   bool timing = false;
   bool verify = false;
 
-  /// Throws CLI::ValidationError if options contradict each other, and kTargetMissing.
+  /// Throws a Refusal if options contradict each other, and kTargetMissing.
   void check() const;
-  /// Returns whether a question needs voxels: contacts, times, budgets and engines do. All others
-  /// are about triangles.
+  /// Returns whether a question needs voxels: contacts, times, budgets and engines do. All other
+  /// questions are about triangles.
   [[nodiscard]] bool asks_voxels() const;
   /// Returns the engines that answer, one or two.
   [[nodiscard]] std::vector<std::string> asked_engines() const;
-  /// Returns the files with the chosen policy; without voxels where none are needed.
+  /// Returns the files with the chosen policy, and without voxels if no question needs them.
   [[nodiscard]] BodyFiles body_files() const;
 };
 

@@ -7,16 +7,19 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "cli/answers/answer_lines.h"
-#include "cli/contacts/contact_writer.h"
-#include "cli/engine.h"
+#include "answers/engine.h"
+#include "cli/answer_words.h"
+#include "cli/contact_file.h"
 #include "cli/exit_code.h"
-#include "cli/header_line.h"
 #include "cli/progress_bar.h"
+#include "cli/terminal.h"
 #include "ist/tree/implicit_ball.h"
 #include "verify/answer_verifier.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 std::vector<PoseAnswer> ask(Engines& engines, Examiner& examiner,

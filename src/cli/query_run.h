@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "cli/answers/answer.h"
-#include "cli/bodies.h"
+#include "answers/answer.h"
+#include "answers/bodies.h"
 #include "cli/query_options.h"
 
 namespace ist::cli {
@@ -21,11 +21,12 @@ struct AskedPose {
 /// list with the engines in turn; prints the answers, and writes contacts if a file is named. With
 /// --verify, runs each engine at each pose once more and checks those answers before a line is
 /// printed or the file appears. Returns how the bodies meet where they do so most certainly.
-[[nodiscard]] Meeting run_queries(const Bodies& bodies, const std::vector<AskedPose>& poses,
-                                  const QueryOptions& options);
+[[nodiscard]] answers::Meeting run_queries(const answers::Bodies& bodies,
+                                           const std::vector<AskedPose>& poses,
+                                           const QueryOptions& options);
 
 /// Throws a Failure of kTouching, which says how the bodies meet; of kFailed if that is unknown;
 /// nothing if they are apart.
-void fail_where_they_meet(Meeting meeting);
+void fail_where_they_meet(answers::Meeting meeting);
 
 }  // namespace ist::cli

@@ -6,9 +6,13 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 bool has_colours() {
@@ -18,6 +22,12 @@ bool has_colours() {
          (kind == nullptr || std::string_view(kind) != "dumb");
 }
 
+NamedSources read(const NamedFiles& files) {
+  NamedSources sources;
+  for (const auto& [name, file] : files) sources.emplace_back(name, source_of(file));
+  return sources;
+}
+
 }  // namespace
 
 std::string painted(std::string_view text, TextColour colour) {
@@ -25,6 +35,17 @@ std::string painted(std::string_view text, TextColour colour) {
   if (!colours) return std::string(text);
   const char* code = colour == TextColour::kRed ? "31" : colour == TextColour::kYellow ? "33" : "1";
   return fmt::format("\033[{}m{}\033[0m", code, text);
+}
+
+void print_json(const nlohmann::ordered_json& line) { fmt::print("{}\n", json_text(line)); }
+
+void print_header(const std::string& subcommand, const NamedFiles& files) {
+  print_json(header_line(subcommand, read(files)));
+}
+
+void print_header(const std::string& subcommand, const NamedFiles& files, const Bodies& bodies,
+                  const std::optional<TakenUnit>& unit) {
+  print_json(header_line(subcommand, read(files), bodies, unit));
 }
 
 void flush_stdout() {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "answers/formats/csv_writer.h"
+#include "answers/refusals.h"
 #include "cli/commands/advise_report.h"
-#include "cli/formats/csv_writer.h"
-#include "cli/poses/numbers.h"
 #include "ist/mesh/mesh.h"
 #include "support/effort.h"
 #include "support/german_locale.h"
@@ -60,7 +60,7 @@ TEST_F(CommandLocale, AdviceIsTheSame) {
 TEST_F(CommandLocale, TablesAreTheSame) {
   const std::string file = folder_.path() / "table.csv";
   expect_same([&] {
-    cli::CsvWriter csv(file, {"a", "b", "c"});
+    answers::CsvWriter csv(file, {"a", "b", "c"});
     csv.row(0.5, 1234567.25F, 1'000'000);
     csv.commit();
     return file_content(file);
@@ -68,8 +68,8 @@ TEST_F(CommandLocale, TablesAreTheSame) {
 }
 
 TEST_F(CommandLocale, NumbersAreReadAlike) {
-  EXPECT_EQ(cli::numbers_of("0.5,-1.25e2"), (std::vector<double>{0.5, -125}));
-  EXPECT_EQ(cli::numbers_of("0.5.5"), std::nullopt);
+  EXPECT_EQ(answers::numbers_of("0.5,-1.25e2"), (std::vector<double>{0.5, -125}));
+  EXPECT_EQ(answers::numbers_of("0.5.5"), std::nullopt);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "cli/occlusion/labels/tooth_labels.h"
+#include "answers/occlusion/labels/tooth_labels.h"
 #include "fuzz/fuzz_target.h"
 #include "fuzz/named_file.h"
 #include "ist/base/error.h"
@@ -23,10 +23,10 @@ std::string fuzz_labels(std::string_view bytes) {
                      : std::tolower(first) == 'v' ? "labels.vtk"
                                                   : "labels.txt";
   const auto numbers =
-      std::isupper(first) != 0 ? cli::ToothNumbers::kUniversal : cli::ToothNumbers::kFdi;
-  cli::ToothLabels labels;
+      std::isupper(first) != 0 ? answers::ToothNumbers::kUniversal : answers::ToothNumbers::kFdi;
+  answers::ToothLabels labels;
   try {
-    labels = cli::read_labels(file.write(name, bytes.substr(1)), mesh, numbers);
+    labels = answers::read_labels(file.write(name, bytes.substr(1)), mesh, numbers);
   } catch (const Error& error) {
     const std::string_view text = error.what();
     require(text.find(name) != std::string_view::npos, "an error does not name the file");
@@ -34,7 +34,7 @@ std::string fuzz_labels(std::string_view bytes) {
   }
   require(labels.size() == mesh.triangles.size(), "a triangle has no label");
   require(std::all_of(labels.begin(), labels.end(),
-                      [&](int label) { return cli::is_tooth_number(label, numbers); }),
+                      [&](int label) { return answers::is_tooth_number(label, numbers); }),
           "a label is no number of the system");
   return "fine";
 }

@@ -12,15 +12,16 @@
 #include <vector>
 
 #include "advise/voxel_advice.h"
+#include "answers/engine.h"
+#include "answers/refusals.h"
 #include "cli/commands/advise_report.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
-#include "cli/header_line.h"
 #include "cli/load_bodies.h"
 #include "cli/poses/pose_file.h"
 #include "cli/poses/pose_options.h"
 #include "cli/progress_bar.h"
-#include "cli/refusals.h"
+#include "cli/terminal.h"
 #include "ist/base/error.h"
 #include "ist/mesh/bounding_box.h"
 #include "ist/tree/sphere_tree.h"
@@ -28,6 +29,9 @@
 #include "simd/dispatch.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 struct AdviseArguments {

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/answers/json_text.h"
+#include "cli/terminal.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist::cli {

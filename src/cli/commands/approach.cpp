@@ -8,19 +8,22 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "cli/answers/json_text.h"
-#include "cli/answers/shared_point.h"
+#include "answers/bodies.h"
+#include "answers/measure_progress.h"
+#include "answers/refusals.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
-#include "cli/measure_progress.h"
 #include "cli/poses/pose_options.h"
 #include "cli/progress_bar.h"
 #include "cli/query_options.h"
 #include "cli/query_run.h"
-#include "cli/refusals.h"
+#include "cli/terminal.h"
 #include "ist/measure/first_contact.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 constexpr double kMostSteps = 1e6;

@@ -6,17 +6,20 @@
 #include <memory>
 
 #include "advise/closing_path.h"
+#include "answers/engine.h"
+#include "answers/refusals.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
-#include "cli/engine.h"
-#include "cli/header_line.h"
 #include "cli/load_bodies.h"
 #include "cli/poses/pose_file.h"
 #include "cli/poses/pose_options.h"
-#include "cli/refusals.h"
+#include "cli/terminal.h"
 #include "ist/models/models.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 using Listed = std::optional<std::uint64_t>;  // pairs, if the answer is a list

@@ -7,19 +7,21 @@
 #include <optional>
 #include <string>
 
-#include "cli/answers/json_text.h"
+#include "answers/extents.h"
+#include "answers/json_parts.h"
+#include "answers/refusals.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
-#include "cli/extents.h"
-#include "cli/header_line.h"
 #include "cli/load_bodies.h"
-#include "cli/refusals.h"
-#include "cli/source_file.h"
+#include "cli/terminal.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 struct BuildArguments {

@@ -2,14 +2,17 @@
 #include <memory>
 #include <optional>
 
+#include "answers/refusals.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/poses/pose_options.h"
 #include "cli/query_options.h"
 #include "cli/query_run.h"
-#include "cli/refusals.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 struct CollideArguments {

@@ -3,8 +3,8 @@
 #include "cli/cli11_fwd.h"
 
 /// The subcommands, one file each. Each function adds a subcommand's options and action to `app`.
-/// Data goes to stdout, everything else to stderr; a failure is an ist::Error or a CLI::Error,
-/// caught in main alone.
+/// Data goes to stdout, everything else to stderr; a failure is an ist::Error, a Refusal or a
+/// CLI::Error, which main alone catches.
 namespace ist::cli {
 
 void add_demo(CLI::App& app);

@@ -9,21 +9,23 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "cli/answers/json_text.h"
+#include "answers/engine.h"
+#include "answers/extents.h"
+#include "answers/occlusion/bite_maker.h"
+#include "answers/refusals.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
-#include "cli/engine.h"
-#include "cli/extents.h"
-#include "cli/header_line.h"
 #include "cli/load_bodies.h"
-#include "cli/occlusion/bite_maker.h"
 #include "cli/occlusion/bite_tables.h"
-#include "cli/refusals.h"
+#include "cli/terminal.h"
 #include "ist/mesh/mesh.h"
 #include "ist/models/models.h"
 #include "simd/dispatch.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 constexpr const char *kUpper = "upper_jaw.stl", *kLower = "lower_jaw.stl";

@@ -7,20 +7,22 @@
 #include <optional>
 #include <string>
 
-#include "cli/answers/json_text.h"
+#include "answers/formats/format.h"
+#include "answers/formats/glb_writer.h"
+#include "answers/formats/level_geometry.h"
+#include "answers/formats/ply_writer.h"
+#include "answers/formats/vtp_writer.h"
+#include "answers/refusals.h"
 #include "cli/commands/commands.h"
-#include "cli/commands/level_geometry.h"
 #include "cli/common_options.h"
-#include "cli/formats/format.h"
-#include "cli/formats/glb_writer.h"
-#include "cli/formats/ply_writer.h"
-#include "cli/formats/vtp_writer.h"
-#include "cli/header_line.h"
-#include "cli/refusals.h"
+#include "cli/terminal.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 struct ExportArguments {

@@ -1,25 +1,123 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <Eigen/Geometry>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 
-#include "cli/answers/body_json.h"
-#include "cli/answers/json_text.h"
+#include "answers/body_json.h"
+#include "answers/extents.h"
+#include "answers/json_parts.h"
 #include "cli/commands/commands.h"
-#include "cli/commands/info_text.h"
 #include "cli/common_options.h"
-#include "cli/header_line.h"
-#include "cli/source_file.h"
+#include "cli/load_bodies.h"
+#include "cli/terminal.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/mesh_source.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
+
+void print_extent(const Eigen::AlignedBox3d& box, LengthUnit unit) {
+  const Eigen::Vector3d sides = box.sizes();
+  if (unit == LengthUnit::kUnknown) {
+    fmt::print("extent {} (as mm: {}; as inches: {})\n", sides_text(sides),
+               size_text(sides, LengthUnit::kMillimetre), size_text(sides, LengthUnit::kInch));
+  } else {
+    fmt::print("extent {} {} ({})\n", sides_text(sides), to_string(unit), size_text(sides, unit));
+  }
+  fmt::print("box {}\n", box_text(box));
+}
+
+void print_frame(PatientFrame frame) {
+  if (frame == PatientFrame::kUnknown) return;
+  fmt::print("frame {}: +x to the patient's {}, +y to the {}\n", to_string(frame),
+             frame == PatientFrame::kRas ? "right" : "left",
+             frame == PatientFrame::kRas ? "front" : "back");
+}
+
+void print_topology(const MeshReport& report, LengthUnit unit) {
+  fmt::print("{}, {}", report.closed ? "closed" : "open",
+             report.consistent ? "wound consistently" : "not wound consistently");
+  if (report.closed && report.consistent) {
+    fmt::print(", volume {}", number_text(report.signed_volume));
+    if (unit != LengthUnit::kUnknown) fmt::print(" {}³", to_string(unit));
+  }
+  fmt::print("\n");
+  if (report.self_intersections == 0) return;
+  fmt::print("{}{} pair{} of triangles intersect{}, first:\n",
+             report.self_intersections_complete ? "" : "at least ", report.self_intersections,
+             report.self_intersections == 1 ? "" : "s", report.self_intersections == 1 ? "s" : "");
+  for (const SelfIntersection& one : report.first_self_intersections) {
+    fmt::print("  triangles {} and {} near ({:g}, {:g}, {:g})\n", one.triangles[0],
+               one.triangles[1], one.near[0], one.near[1], one.near[2]);
+  }
+}
+
+void print_source(const MeshSource& source) {
+  fmt::print("built of {}", source.name.empty() ? "a mesh of unknown name" : source.name);
+  if (source.hash != 0) fmt::print(", XXH3 {:016x}", source.hash);
+  fmt::print(", unit {}\n", to_string(source.unit));
+}
+
+void print_levels(const SphereTree& tree, const std::vector<LevelStatistics>& levels) {
+  fmt::print(
+      "volume of the spheres, in circumspheres of a voxel, and time to make them (tight "
+      "and slab: to read them)\n");
+  fmt::print("{:>5} {:>10} {:>10}", "level", "edge", "nodes");
+  for (const LevelSpheres& spheres : levels.front().spheres) {
+    fmt::print(" {:>14} {:>9}", to_string(spheres.policy), "ms");
+  }
+  fmt::print("\n");
+  const double unit = unit_ball_volume(tree.voxel_size());
+  for (const LevelStatistics& level : levels) {
+    fmt::print("{:>5} {:>10.4g} {:>10}", level.level, level.edge, level.nodes);
+    for (const LevelSpheres& spheres : level.spheres) {
+      fmt::print(" {:>14.0f} {:>9.3f}", spheres.volume / unit, spheres.milliseconds);
+    }
+    fmt::print("\n");
+  }
+}
+
+// Prints for people the counts, size, topology and box of a mesh, and its warnings to stderr.
+void print_mesh(const std::filesystem::path& file, const MeshReport& report,
+                const TriangleMesh& mesh) {
+  fmt::print("{}: a mesh of {} triangles and {} vertices, {} component{}\n", file.string(),
+             report.triangles, report.vertices, report.components,
+             report.components == 1 ? "" : "s");
+  print_extent({report.box_min, report.box_max}, mesh.unit);
+  print_frame(mesh.frame);
+  print_topology(report, mesh.unit);
+  print_warnings(warnings(report));
+}
+
+// Prints for people the counts, source, size and levels of a tree, and the topology of its
+// triangles if it keeps any.
+void print_tree(const std::filesystem::path& file, const SphereTree& tree,
+                const std::optional<MeshReport>& triangles,
+                const std::vector<LevelStatistics>& levels) {
+  fmt::print("{}: a tree of {} voxels of edge {}, {} nodes, {:.1f} MB in memory\n", file.string(),
+             tree.leaf_count(), tree.voxel_size(), tree.parts().octree.node_count(),
+             static_cast<double>(tree.bytes()) / 1e6);
+  print_source(tree.source());
+  print_extent(box_of(tree), tree.source().unit);
+  print_frame(tree.frame());
+  if (triangles) print_topology(*triangles, tree.source().unit);
+  fmt::print("orientation {}, {} triangles kept, {} proximity voxels\n\n",
+             tree.orientation() == Orientation::kOutward ? "outward" : "assumed",
+             triangles ? triangles->triangles : 0,
+             tree.parts().proximity ? tree.parts().proximity->octree.leaf_count() : 0);
+  print_levels(tree, levels);
+}
 
 struct InfoArguments {
   std::filesystem::path file;

@@ -12,33 +12,34 @@
 #include <system_error>
 #include <vector>
 
-#include "cli/answers/json_text.h"
+#include "answers/formats/format.h"
+#include "answers/formats/glb_writer.h"
+#include "answers/formats/ply_writer.h"
+#include "answers/formats/vtp_writer.h"
+#include "answers/json_parts.h"
+#include "answers/occlusion/bite_csv.h"
+#include "answers/occlusion/bite_json.h"
+#include "answers/occlusion/bite_maker.h"
+#include "answers/occlusion/bite_surfaces.h"
+#include "answers/occlusion/labels/tooth_labels.h"
+#include "answers/refusals.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
-#include "cli/formats/format.h"
-#include "cli/formats/glb_writer.h"
-#include "cli/formats/ply_writer.h"
-#include "cli/formats/vtp_writer.h"
-#include "cli/header_line.h"
 #include "cli/load_bodies.h"
-#include "cli/occlusion/bite_csv.h"
 #include "cli/occlusion/bite_html.h"
-#include "cli/occlusion/bite_json.h"
-#include "cli/occlusion/bite_maker.h"
-#include "cli/occlusion/bite_surfaces.h"
 #include "cli/occlusion/bite_tables.h"
-#include "cli/occlusion/labels/tooth_labels.h"
 #include "cli/page/page_blocks.h"
 #include "cli/page/page_file.h"
-#include "cli/poses/numbers.h"
 #include "cli/poses/pose_options.h"
 #include "cli/progress_bar.h"
 #include "cli/query_run.h"
-#include "cli/refusals.h"
-#include "cli/source_file.h"
+#include "cli/terminal.h"
 #include "ist/base/files.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 constexpr std::array kWritable = {FileFormat::kVtp, FileFormat::kPly,  FileFormat::kGlb,

@@ -9,23 +9,25 @@
 #include <optional>
 #include <stdexcept>
 
+#include "answers/refusals.h"
 #include "cli/commands/commands.h"
 #include "cli/commands/run_report.h"
 #include "cli/common_options.h"
 #include "cli/exit_code.h"
-#include "cli/header_line.h"
 #include "cli/interruption.h"
 #include "cli/load_bodies.h"
 #include "cli/progress_bar.h"
 #include "cli/recordings/tick_lines.h"
 #include "cli/recordings/tick_recorder.h"
-#include "cli/refusals.h"
 #include "cli/terminal.h"
 #include "ist/base/error.h"
 #include "ist/haptics/servo_loop.h"
 #include "ist/scene.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 struct RunArguments {

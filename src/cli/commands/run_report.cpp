@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "cli/answers/json_text.h"
+#include "cli/terminal.h"
 
 namespace ist::cli {
 namespace {

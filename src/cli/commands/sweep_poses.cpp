@@ -7,19 +7,22 @@
 #include <string>
 #include <vector>
 
+#include "answers/measure_progress.h"
+#include "answers/refusals.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/exit_code.h"
 #include "cli/interruption.h"
-#include "cli/measure_progress.h"
 #include "cli/progress_bar.h"
-#include "cli/refusals.h"
 #include "cli/sweeps/part_words.h"
 #include "ist/base/cancellation.h"
 #include "ist/sweep/merge_parts.h"
 #include "ist/sweep/sweep.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 struct SweepArguments {

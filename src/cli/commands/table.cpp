@@ -11,18 +11,20 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/answers/json_text.h"
+#include "answers/json_parts.h"
+#include "answers/refusals.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/exit_code.h"
-#include "cli/header_line.h"
-#include "cli/refusals.h"
 #include "cli/terminal.h"
 #include "hardware/table_export.h"
 #include "hardware/vector_file.h"
 #include "ist/base/files.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 constexpr std::string_view kGenerator = "ist " IST_VERSION;

@@ -7,18 +7,21 @@
 #include <optional>
 #include <stdexcept>
 
+#include "answers/formats/format.h"
+#include "answers/refusals.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
-#include "cli/formats/format.h"
 #include "cli/load_bodies.h"
 #include "cli/page/page_blocks.h"
 #include "cli/page/page_file.h"
 #include "cli/page/recording_block.h"
 #include "cli/poses/pose_options.h"
-#include "cli/refusals.h"
 #include "ist/base/files.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 struct ViewArguments {

@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 
-#include "cli/occlusion/bite_hints.h"
+#include "answers/occlusion/bite_hints.h"
+#include "answers/occlusion/bite_numbers.h"
 #include "cli/occlusion/html/bite_figures.h"
-#include "cli/occlusion/html/bite_numbers.h"
 #include "cli/occlusion/html/html_tables.h"
 #include "cli/occlusion/html/html_text.h"
 #include "ist/base/files.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 // Logical properties throughout: a page without sides has no words for them here either.

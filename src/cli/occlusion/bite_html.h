@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "cli/occlusion/bite.h"
+#include "answers/occlusion/bite.h"
 #include "ist/base/files.h"
 
 namespace ist::cli {
@@ -12,8 +12,8 @@ namespace ist::cli {
 /// outside; it is well-formed XML too. Its words for sides are those of the bite's divisions alone.
 /// Throws kFileUnwritable. Cost: some 0.2 s for two bodies of 100,000 triangles; the file takes
 /// about 0.5 MB.
-void write_bite_html(const Bite& bite, OutputFile& file);
+void write_bite_html(const answers::Bite& bite, OutputFile& file);
 /// The same, and completes the file.
-void write_bite_html(const Bite& bite, const std::filesystem::path& file);
+void write_bite_html(const answers::Bite& bite, const std::filesystem::path& file);
 
 }  // namespace ist::cli

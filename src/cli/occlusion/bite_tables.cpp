@@ -3,17 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "cli/answers/json_text.h"
-#include "cli/occlusion/bite_hints.h"
-#include "cli/occlusion/bite_json.h"
-#include "cli/occlusion/html/bite_numbers.h"
+#include "answers/occlusion/bite_hints.h"
+#include "answers/occlusion/bite_numbers.h"
 #include "cli/terminal.h"
-#include "ist/base/files.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 // How far apart, and how deep: of a body that lies inside the other both are known.
@@ -64,11 +63,6 @@ std::string second_line(const Bite& bite) {
 }
 
 }  // namespace
-
-void write_bite_json(const Bite& bite, OutputFile& file) {
-  const std::string text = json_text(json_of(bite), 2) + "\n";
-  file.write(text.data(), text.size());
-}
 
 void print_bite(const Bite& bite, std::span<const std::filesystem::path> written) {
   std::string last = "checks: ";

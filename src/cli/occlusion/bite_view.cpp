@@ -7,9 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "cli/occlusion/bite_direction.h"
+#include "answers/occlusion/bite_direction.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 using Vector = Eigen::Vector3d;

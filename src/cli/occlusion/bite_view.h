@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "cli/occlusion/bite.h"
+#include "answers/occlusion/bite.h"
 
 namespace ist::cli {
 
@@ -27,6 +27,6 @@ struct BiteViews {
 /// Looks along the direction between the bodies (bite_direction.h). `Bite::sides` runs across, its
 /// first side at the end of the lines. Shows both bodies whole; or the part where they face each
 /// other within the reach, up to three times as large, and all contact regions.
-[[nodiscard]] BiteViews bite_views(const Bite& bite, int width, int height);
+[[nodiscard]] BiteViews bite_views(const answers::Bite& bite, int width, int height);
 
 }  // namespace ist::cli

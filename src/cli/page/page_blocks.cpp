@@ -3,12 +3,15 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "answers/json_parts.h"
+#include "answers/version.h"
 #include "cli/occlusion/html/html_text.h"
-#include "cli/poses/pose_json.h"
-#include "cli/version.h"
 #include "ist/tree/tree_parts.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 using nlohmann::ordered_json;

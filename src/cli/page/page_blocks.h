@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/bodies.h"
-#include "cli/occlusion/bite_maker.h"
+#include "answers/bodies.h"
+#include "answers/occlusion/bite_maker.h"
 
 namespace ist::cli {
 
@@ -33,11 +33,12 @@ struct NamedTree {
 
 /// Returns the data of a page that shows an occlusion: the page measures it again, to the same
 /// bits.
-[[nodiscard]] nlohmann::ordered_json bite_block(const Bodies& bodies, const Bite& bite,
-                                                const BiteQuestions& questions);
+[[nodiscard]] nlohmann::ordered_json bite_block(const answers::Bodies& bodies,
+                                                const answers::Bite& bite,
+                                                const answers::BiteQuestions& questions);
 
 /// Whether the page can ask all that was asked: it knows no sides, midlines, labels and
 /// regions.
-[[nodiscard]] bool page_shows(const BiteQuestions& questions);
+[[nodiscard]] bool page_shows(const answers::BiteQuestions& questions);
 
 }  // namespace ist::cli

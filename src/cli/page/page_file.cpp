@@ -9,10 +9,13 @@
 #include <string_view>
 #include <system_error>
 
-#include "cli/answers/json_text.h"
+#include "answers/json_parts.h"
 #include "ist/base/error.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 constexpr std::string_view kBegin = R"(<script type="application/json" id="ist-data">)";

@@ -7,10 +7,10 @@
 #include <utility>
 #include <variant>
 
-#include "cli/extents.h"
+#include "answers/extents.h"
+#include "answers/json_parts.h"
 #include "cli/load_bodies.h"
 #include "cli/page/page_blocks.h"
-#include "cli/poses/pose_json.h"
 #include "cli/progress_bar.h"
 #include "cli/recordings/recording_header.h"
 #include "ist/base/error.h"
@@ -18,6 +18,9 @@
 #include "ist/scene.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 using nlohmann::ordered_json;

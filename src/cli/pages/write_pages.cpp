@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "answers/commit.h"
 #include "cli/app.h"
 #include "cli/exit_code.h"
 #include "cli/pages/bash_completion.h"

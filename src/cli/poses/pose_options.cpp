@@ -9,15 +9,16 @@
 #include <optional>
 
 #include "advise/closing_path.h"
-#include "cli/poses/matrix_file.h"
-#include "cli/poses/numbers.h"
+#include "answers/refusals.h"
 #include "cli/poses/pose_file.h"
-#include "cli/refusals.h"
 #include "ist/base/angles.h"
 #include "ist/base/direction.h"
 #include "ist/base/pose.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 // Whole quarters of a turn have whole numbers.

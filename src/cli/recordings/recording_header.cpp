@@ -7,12 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "cli/answers/json_text.h"
-#include "cli/commit.h"
-#include "cli/source_file.h"
+#include "answers/commit.h"
+#include "answers/json_parts.h"
 #include "ist/base/error.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 // 1 had no header.

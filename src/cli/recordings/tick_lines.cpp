@@ -6,10 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "cli/answers/json_text.h"
+#include "answers/json_parts.h"
 #include "ist/base/error.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 constexpr std::size_t kFlush = 1 << 16;  // bytes

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/line_reader.h"
+#include "cli/recordings/line_reader.h"
 #include "cli/recordings/recording_header.h"
 #include "ist/base/files.h"
 #include "ist/haptics/recording.h"

@@ -5,12 +5,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "cli/answers/json_text.h"
-#include "cli/header_line.h"
-#include "cli/source_file.h"
+#include "answers/json_parts.h"
+#include "cli/terminal.h"
 #include "ist/tree/mesh_source.h"
 
 namespace ist::cli {
+
+using namespace answers;
 
 std::string ranges(const std::vector<std::uint64_t>& numbers) {
   std::string text;

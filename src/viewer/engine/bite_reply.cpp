@@ -7,30 +7,29 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "cli/formats/glb_writer.h"
-#include "cli/occlusion/bite_json.h"
-#include "cli/occlusion/bite_maker.h"
-#include "cli/occlusion/bite_surfaces.h"
-#include "cli/occlusion/map_colours.h"
-#include "cli/occlusion/open_book.h"
-#include "cli/poses/pose_json.h"
+#include "answers/formats/glb_writer.h"
+#include "answers/json_parts.h"
+#include "answers/occlusion/bite_json.h"
+#include "answers/occlusion/bite_maker.h"
+#include "answers/occlusion/bite_surfaces.h"
+#include "answers/occlusion/map_colours.h"
 #include "ist/base/error.h"
 #include "ist/base/files.h"
 
 namespace ist::viewer {
 namespace {
 
-using cli::Colour;
+using answers::Colour;
 using nlohmann::ordered_json;
 
 constexpr double kBookGap = 10;  // millimetres
 
-cli::Bite bite_of(const cli::Bodies& bodies, const Asked& asked, Progress& progress) {
-  cli::BiteQuestions questions;
+answers::Bite bite_of(const answers::Bodies& bodies, const Asked& asked, Progress& progress) {
+  answers::BiteQuestions questions;
   const std::string preset = asked.text("preset");
-  const auto found = std::find_if(cli::presets().begin(), cli::presets().end(),
-                                  [&](const cli::Preset& each) { return each.name == preset; });
-  if (found == cli::presets().end()) {
+  const auto found = std::find_if(answers::presets().begin(), answers::presets().end(),
+                                  [&](const answers::Preset& each) { return each.name == preset; });
+  if (found == answers::presets().end()) {
     throw Error(ErrorCode::kArgumentInvalid,
                 fmt::format("preset: no preset has the name {}", preset));
   }
@@ -43,15 +42,15 @@ cli::Bite bite_of(const cli::Bodies& bodies, const Asked& asked, Progress& progr
   }
   if (bodies.unit() == LengthUnit::kUnknown) questions.unit = asked.unit();
   questions.sides.frame = asked.text_or_none("frame");
-  return cli::make_bite(bodies, {bodies.fixed.source(), bodies.moving.source()}, asked.pose("pose"),
-                        questions, progress);
+  return answers::make_bite(bodies, {bodies.fixed.source(), bodies.moving.source()},
+                            asked.pose("pose"), questions, progress);
 }
 
 std::string web_colour(const Colour& colour) {
   return fmt::format("#{:02x}{:02x}{:02x}", colour[0], colour[1], colour[2]);
 }
 
-ordered_json side_of(const cli::BiteBody& body, Reply& reply) {
+ordered_json side_of(const answers::BiteBody& body, Reply& reply) {
   std::vector<float> distances;
   for (const SurfaceDistance& one : body.surface.vertices) {
     distances.push_back(static_cast<float>(one.distance));
@@ -60,23 +59,24 @@ ordered_json side_of(const cli::BiteBody& body, Reply& reply) {
 }
 
 // Both bodies of an opened book as the page draws it: x to the right, z up, the viewer at -y.
-ordered_json book_of(const cli::Bite& bite, cli::BookLayout layout) {
-  const cli::OpenedBook book = cli::opened(bite, kBookGap * bite.units_per_mm, layout);
+ordered_json book_of(const answers::Bite& bite, answers::BookLayout layout) {
+  const answers::OpenedBook book = answers::opened(bite, kBookGap * bite.units_per_mm, layout);
   Eigen::Isometry3d drawn = Eigen::Isometry3d::Identity();
   drawn.linear() << book.up.cross(book.viewer).transpose(), -book.viewer.transpose(),
       book.up.transpose();
-  return {{"fixed", cli::pose_json(drawn * book.fixed * bite.fixed.to_fixed)},
-          {"moving", cli::pose_json(drawn * book.moving * bite.moving.to_fixed)}};
+  return {{"fixed", answers::pose_json(drawn * book.fixed * bite.fixed.to_fixed)},
+          {"moving", answers::pose_json(drawn * book.moving * bite.moving.to_fixed)}};
 }
 
 }  // namespace
 
-void fill_bite(const cli::Bodies& bodies, const Asked& asked, Progress& progress, Reply& reply) {
-  const cli::Bite bite = bite_of(bodies, asked, progress);
-  const std::vector<cli::MapBand> bands = cli::map_bands(bite);
-  reply.json["bite"] = cli::json_of(bite);
+void fill_bite(const answers::Bodies& bodies, const Asked& asked, Progress& progress,
+               Reply& reply) {
+  const answers::Bite bite = bite_of(bodies, asked, progress);
+  const std::vector<answers::MapBand> bands = answers::map_bands(bite);
+  reply.json["bite"] = answers::json_of(bite);
   reply.json["bands"] = ordered_json::array();
-  for (const cli::MapBand& band : bands) {
+  for (const answers::MapBand& band : bands) {
     ordered_json line{{"from", nullptr},
                       {"to", band.to},
                       {"colour", web_colour(band.colour)},
@@ -85,23 +85,23 @@ void fill_bite(const cli::Bodies& bodies, const Asked& asked, Progress& progress
     if (std::isfinite(band.from)) line["from"] = band.from;
     reply.json["bands"].push_back(line);
   }
-  reply.json["bare"] = web_colour(cli::kBareSurface);
-  reply.json["book"] = {{"beside", book_of(bite, cli::BookLayout::kBeside)},
-                        {"above", book_of(bite, cli::BookLayout::kAbove)}};
+  reply.json["bare"] = web_colour(answers::kBareSurface);
+  reply.json["book"] = {{"beside", book_of(bite, answers::BookLayout::kBeside)},
+                        {"above", book_of(bite, answers::BookLayout::kAbove)}};
   reply.json["fixed"] = side_of(bite.fixed, reply);
   reply.json["moving"] = side_of(bite.moving, reply);
 }
 
-std::vector<std::uint8_t> coloured_glb(const cli::Bodies& bodies, const Asked& asked,
+std::vector<std::uint8_t> coloured_glb(const answers::Bodies& bodies, const Asked& asked,
                                        Progress& progress) {
-  const cli::Bite bite = bite_of(bodies, asked, progress);
-  std::vector<cli::NamedPolyData> surfaces = cli::bite_surfaces(bite, {});
-  for (cli::NamedPolyData& body : surfaces) {
-    body.data.normals = cli::vertex_normals(body.data);
+  const answers::Bite bite = bite_of(bodies, asked, progress);
+  std::vector<answers::NamedPolyData> surfaces = answers::bite_surfaces(bite, {});
+  for (answers::NamedPolyData& body : surfaces) {
+    body.data.normals = answers::vertex_normals(body.data);
     body.data.point_arrays.clear();
   }
   const std::filesystem::path file = "page.glb";
-  cli::write_glb(surfaces, 1e-3 / bite.units_per_mm, file);
+  answers::write_glb(surfaces, 1e-3 / bite.units_per_mm, file);
   InputFile input(file);
   std::vector<std::uint8_t> bytes(std::filesystem::file_size(file));
   bytes.resize(input.read(bytes.data(), bytes.size()));

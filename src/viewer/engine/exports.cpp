@@ -6,9 +6,9 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
-#include "cli/answers/json_text.h"
-#include "cli/engine.h"
-#include "cli/version.h"
+#include "answers/engine.h"
+#include "answers/json_parts.h"
+#include "answers/version.h"
 #include "ist/base/error.h"
 #include "viewer/engine/session.h"
 
@@ -40,7 +40,7 @@ std::string& last_text() {
 }
 
 const char* keep(const nlohmann::ordered_json& json) {
-  last_text() = ist::cli::json_text(json);
+  last_text() = ist::answers::json_text(json);
   return last_text().c_str();
 }
 
@@ -56,7 +56,8 @@ extern "C" {
 EMSCRIPTEN_KEEPALIVE const char* ist_page_start() {
   mkdir("fixed", 0700);
   mkdir("moving", 0700);
-  return keep({{"version", ist::cli::version_words()}, {"target", ist::cli::target_names()}});
+  return keep(
+      {{"version", ist::answers::version_words()}, {"target", ist::answers::target_names()}});
 }
 
 /// Answers a question: {"answer": …}, or {"error": {"code", "text"}}. Arrays are valid until the

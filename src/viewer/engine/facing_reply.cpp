@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "cli/extents.h"
-#include "cli/measure_progress.h"
-#include "cli/occlusion/bite_direction.h"
-#include "cli/occlusion/sides.h"
+#include "answers/extents.h"
+#include "answers/measure_progress.h"
+#include "answers/occlusion/bite_direction.h"
+#include "answers/occlusion/sides.h"
 #include "ist/measure/occlusion.h"
 
 namespace ist::viewer {
@@ -28,7 +28,8 @@ nlohmann::ordered_json numbers_of(const Eigen::Vector3d& v) { return {v[0], v[1]
 
 }  // namespace
 
-void fill_facing(const cli::Bodies& bodies, const Asked& asked, Progress& progress, Reply& reply) {
+void fill_facing(const answers::Bodies& bodies, const Asked& asked, Progress& progress,
+                 Reply& reply) {
   reply.json = {{"known", false}};
   Query query(bodies.fixed, bodies.moving, {.policy = bodies.policy});
   if (!query.has_triangles()) return;
@@ -38,21 +39,22 @@ void fill_facing(const cli::Bodies& bodies, const Asked& asked, Progress& progre
   options.limits.clear();
   options.contact = options.foundation = options.change = 0;
   options.longest_edge = kLongestEdge * extent;
-  options.proceed = cli::shown_by(progress, "looking where the bodies face each other");
+  options.proceed = answers::shown_by(progress, "looking where the bodies face each other");
   Occlusion found;
   for (const double part : kReaches) {
     options.reach = part * extent;
     found = occlusion(query, pose, options);
     if (any_near(found.fixed) || any_near(found.moving)) break;
   }
-  cli::SideOptions named;
+  answers::SideOptions named;
   named.frame = asked.text_or_none("frame");
-  const auto [sides, fore_aft] = cli::divisions(named, bodies.frame(), cli::box_of(bodies.fixed));
-  const cli::FacingBody fixed(*bodies.fixed.triangles(), found.fixed.vertices,
-                              Eigen::Isometry3d::Identity());
-  const cli::FacingBody moving(*bodies.moving.triangles(), found.moving.vertices, pose);
-  const cli::BiteDirections ways =
-      cli::directions_of(fixed, moving, options.reach, sides, fore_aft);
+  const auto [sides, fore_aft] =
+      answers::divisions(named, bodies.frame(), answers::box_of(bodies.fixed));
+  const answers::FacingBody fixed(*bodies.fixed.triangles(), found.fixed.vertices,
+                                  Eigen::Isometry3d::Identity());
+  const answers::FacingBody moving(*bodies.moving.triangles(), found.moving.vertices, pose);
+  const answers::BiteDirections ways =
+      answers::directions_of(fixed, moving, options.reach, sides, fore_aft);
   Eigen::Index upright = 0;
   ways.towards.cwiseAbs().maxCoeff(&upright);
   reply.json = {{"known", any_near(found.fixed) || any_near(found.moving)},

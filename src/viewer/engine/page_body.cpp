@@ -6,10 +6,10 @@
 #include <numeric>
 #include <utility>
 
-#include "cli/answers/body_json.h"
-#include "cli/commands/level_geometry.h"
-#include "cli/extents.h"
-#include "cli/source_file.h"
+#include "answers/body_json.h"
+#include "answers/extents.h"
+#include "answers/formats/level_geometry.h"
+#include "answers/json_parts.h"
 #include "ist/base/error.h"
 #include "ist/tree/tree_parts.h"
 
@@ -56,17 +56,17 @@ PageBody::PageBody(const std::filesystem::path& file, LengthUnit unit, PatientFr
       mesh_ = *tree_->triangles();
       triangles = check_mesh(*mesh_);
     }
-    info_ = cli::tree_json(name_, *tree_, triangles, level_statistics(*tree_));
-    extent_ = cli::largest_extent(cli::box_of(*tree_));
+    info_ = answers::tree_json(name_, *tree_, triangles, level_statistics(*tree_));
+    extent_ = answers::largest_extent(answers::box_of(*tree_));
   } else {
     mesh_ = read_mesh(file);
     turn_into(*mesh_, to_frame);
-    source_ = cli::source_of(file);
+    source_ = answers::source_of(file);
     MeshReport report = check_mesh(*mesh_);
-    info_ = cli::mesh_json(name_, report, source_, mesh_->frame);
+    info_ = answers::mesh_json(name_, report, source_, mesh_->frame);
     report.boundary_edges = 0;  // scans have them, and the page's panel counts them
     warnings_ = warnings(report);
-    extent_ = cli::largest_extent(cli::box_of(*mesh_));
+    extent_ = answers::largest_extent(answers::box_of(*mesh_));
   }
   if (source_.unit == LengthUnit::kUnknown) source_.unit = unit;
 }
@@ -104,7 +104,7 @@ void PageBody::take(Built built) {
 nlohmann::ordered_json PageBody::facts(Reply& reply) const {
   nlohmann::ordered_json facts{{"name", name_},          {"info", info_},
                                {"warnings", warnings_},  {"extent", extent_},
-                               {"rebuilds", rebuilds()}, {"unit", cli::json_of(source_.unit)}};
+                               {"rebuilds", rebuilds()}, {"unit", answers::json_of(source_.unit)}};
   if (mesh_) {
     std::vector<std::uint32_t> corners;
     corners.reserve(3 * mesh_->triangles.size());
@@ -115,7 +115,7 @@ nlohmann::ordered_json PageBody::facts(Reply& reply) const {
     facts["triangles"] = reply.array(std::move(corners));
     return facts;
   }
-  const cli::PolyData cubes = cli::level_cubes(*tree_, 0);
+  const answers::PolyData cubes = answers::level_cubes(*tree_, 0);
   facts["positions"] = reply.array(positions_of(cubes.points));
   facts["triangles"] = reply.array(halves_of(cubes.polygons));
   return facts;

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/answers/answer_json.h"
-#include "cli/header_line.h"
+#include "answers/answer.h"
+#include "answers/json_parts.h"
 
 namespace ist::viewer {
 namespace {
@@ -20,7 +20,7 @@ constexpr std::chrono::milliseconds kShortestGroup{1}, kLongest{400};
 // A distance that a person sees, of the smaller body's extent.
 constexpr double kSeen = 1e-3;
 
-double median_time(cli::Engine& engine, const Eigen::Isometry3d& pose) {
+double median_time(answers::Engine& engine, const Eigen::Isometry3d& pose) {
   using Clock = std::chrono::steady_clock;
   std::vector<double> groups;
   const auto begin = Clock::now();
@@ -63,25 +63,25 @@ nlohmann::ordered_json contacts_of(const ContactManifold& manifold, double stiff
 
 }  // namespace
 
-Pair::Pair(const cli::Bodies& bodies)
+Pair::Pair(const answers::Bodies& bodies)
     : bodies_(bodies),
       examiner_(bodies_, {}, {}),
       query_(bodies_.fixed, bodies_.moving, {.policy = bodies_.policy}),
       manifold_(bodies_.fixed, bodies_.moving, bodies_.policy) {
-  engines_.emplace_back(cli::kEngineNames.front(), bodies_.fixed, bodies_.moving,
-                        cli::EngineOptions{.policy = bodies_.policy});
+  engines_.emplace_back(answers::kEngineNames.front(), bodies_.fixed, bodies_.moving,
+                        answers::EngineOptions{.policy = bodies_.policy});
 }
 
 nlohmann::ordered_json Pair::collide(const Eigen::Isometry3d& pose) {
-  cli::Engine& engine = engines_.front();
-  cli::PoseAnswer answer{pose, {}, examiner_.at(pose), {}};
-  const cli::Engine::Answer given = engine.ask(pose);
+  answers::Engine& engine = engines_.front();
+  answers::PoseAnswer answer{pose, {}, examiner_.at(pose), {}};
+  const answers::Engine::Answer given = engine.ask(pose);
   answer.engines.push_back({given.result, {given.microseconds}});
   return {{"header",
-           cli::header_line(
+           answers::header_line(
                "collide", {{"fixed", bodies_.fixed.source()}, {"moving", bodies_.moving.source()}},
                bodies_)},
-          {"line", cli::answer_line(0, answer, engine, answer.engines.front(), bodies_)},
+          {"line", answers::answer_line(0, answer, engine, answer.engines.front(), bodies_)},
           {"microseconds", median_time(engine, pose)}};
 }
 
@@ -102,7 +102,7 @@ Pair& Pairs::of(std::optional<SpherePolicy> policy) {
   bodies_.moving.require(wanted, "the moving body");
   std::optional<Pair>& pair = pairs_[static_cast<std::size_t>(wanted)];
   if (!pair) {
-    cli::Bodies bodies = bodies_;
+    answers::Bodies bodies = bodies_;
     bodies.policy = wanted;
     pair.emplace(bodies);
   }

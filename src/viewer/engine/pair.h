@@ -4,9 +4,9 @@
 #include <array>
 #include <optional>
 
-#include "cli/answers/examiner.h"
-#include "cli/bodies.h"
-#include "cli/engine.h"
+#include "answers/bodies.h"
+#include "answers/engine.h"
+#include "answers/examiner.h"
 #include "ist/query/query.h"
 #include "viewer/engine/reply.h"
 
@@ -16,7 +16,7 @@ namespace ist::viewer {
 class Pair {
  public:
   /// Reserves all memory. Throws as Query does.
-  explicit Pair(const cli::Bodies& bodies);
+  explicit Pair(const answers::Bodies& bodies);
 
   /// Answers as `ist collide --json` does: "header", "line", and "microseconds", the median of
   /// groups of queries that are timed together, for a page's clock is coarse.
@@ -27,12 +27,12 @@ class Pair {
   void tick(const Eigen::Isometry3d& pose, double stiffness, Reply& reply);
 
   [[nodiscard]] Query& query() noexcept { return query_; }
-  [[nodiscard]] const cli::Bodies& bodies() const noexcept { return bodies_; }
+  [[nodiscard]] const answers::Bodies& bodies() const noexcept { return bodies_; }
 
  private:
-  cli::Bodies bodies_;
-  cli::Engines engines_;
-  cli::Examiner examiner_;
+  answers::Bodies bodies_;
+  answers::Engines engines_;
+  answers::Examiner examiner_;
   Query query_;
   ContactManifold manifold_;
 };
@@ -40,14 +40,14 @@ class Pair {
 /// The pairs of two trees, by policy, each made when it is first asked.
 class Pairs {
  public:
-  explicit Pairs(cli::Bodies bodies) : bodies_(std::move(bodies)) {}
+  explicit Pairs(answers::Bodies bodies) : bodies_(std::move(bodies)) {}
 
   /// Throws kPolicyMissing. @param policy nothing: the tightest that both trees have
   [[nodiscard]] Pair& of(std::optional<SpherePolicy> policy);
-  [[nodiscard]] const cli::Bodies& bodies() const noexcept { return bodies_; }
+  [[nodiscard]] const answers::Bodies& bodies() const noexcept { return bodies_; }
 
  private:
-  cli::Bodies bodies_;
+  answers::Bodies bodies_;
   std::array<std::optional<Pair>, kSpherePolicies.size()> pairs_;
 };
 

@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "cli/answers/shared_point.h"
-#include "cli/extents.h"
-#include "cli/poses/pose_json.h"
+#include "answers/bodies.h"
+#include "answers/extents.h"
+#include "answers/json_parts.h"
 #include "ist/base/error.h"
 #include "ist/measure/first_contact.h"
 #include "ist/models/models.h"
@@ -97,15 +97,15 @@ Pairs& Session::pairs() {
   return *pairs_;
 }
 
-cli::Bodies Session::whole() {
+answers::Bodies Session::whole() {
   PageBody &fixed = present(Role::kFixed), &moving = present(Role::kMoving);
   const SphereTree &one = fixed.whole(), &other = moving.whole();
-  cli::Bodies bodies{one, other, std::min(one.tightest(), other.tightest())};
+  answers::Bodies bodies{one, other, std::min(one.tightest(), other.tightest())};
   name(bodies);
   return bodies;
 }
 
-void Session::name(cli::Bodies& bodies) {
+void Session::name(answers::Bodies& bodies) {
   bodies.fixed_name = present(Role::kFixed).name();
   bodies.moving_name = present(Role::kMoving).name();
   if (contradict(bodies.fixed.frame(), bodies.moving.frame())) {
@@ -160,10 +160,11 @@ Reply Session::build(const Asked& asked, Progress& progress) {
   PageBody &fixed = present(Role::kFixed), &moving = present(Role::kMoving);
   const double extent = std::min(fixed.extent(), moving.extent());
   const double voxel_size =
-      asked.number_or_none("voxel_size").value_or(cli::rounded_voxel_size(extent));
+      asked.number_or_none("voxel_size").value_or(answers::rounded_voxel_size(extent));
   PageBody::Built one = fixed.built(voxel_size, progress),
                   other = moving.built(voxel_size, progress);
-  cli::Bodies bodies{one.tree, other.tree, std::min(one.tree.tightest(), other.tree.tightest())};
+  answers::Bodies bodies{one.tree, other.tree,
+                         std::min(one.tree.tightest(), other.tree.tightest())};
   bodies.fixed_voxel_size = bodies.fixed.voxel_size();
   bodies.moving_voxel_size = bodies.moving.voxel_size();
   name(bodies);
@@ -193,17 +194,17 @@ Reply Session::first_contact(const Asked& asked, Progress& progress) {
   reply.json = {{"status", to_string(found.status)},
                 {"lower", found.lower},
                 {"upper", found.upper},
-                {"pose", cli::pose_json(pose)},
+                {"pose", answers::pose_json(pose)},
                 {"point", nullptr}};
   if (found.triangles) {
-    const Eigen::Vector3d point = cli::shared_point(pairs().bodies(), *found.triangles, pose);
+    const Eigen::Vector3d point = answers::shared_point(pairs().bodies(), *found.triangles, pose);
     reply.json["point"] = {point[0], point[1], point[2]};
   }
   return reply;
 }
 
 Reply Session::level(const Asked& asked) {
-  const cli::Bodies& bodies = pairs().bodies();
+  const answers::Bodies& bodies = pairs().bodies();
   Reply reply;
   fill_level(asked.role() == Role::kFixed ? bodies.fixed : bodies.moving,
              asked.policy().value_or(bodies.policy), level_of(asked), reply);
@@ -211,7 +212,7 @@ Reply Session::level(const Asked& asked) {
 }
 
 Reply Session::touched(const Asked& asked) {
-  const cli::Bodies& bodies = pairs().bodies();
+  const answers::Bodies& bodies = pairs().bodies();
   const int level = level_of(asked);
   const SearchLevels last{std::min(level, bodies.fixed.depth()),
                           std::min(level, bodies.moving.depth())};
@@ -226,7 +227,7 @@ Reply Session::touched(const Asked& asked) {
 }
 
 const std::vector<StepFront>& Session::recorded(const Asked& asked) {
-  const cli::Bodies& bodies = pairs().bodies();
+  const answers::Bodies& bodies = pairs().bodies();
   const SpherePolicy policy = asked.policy().value_or(bodies.policy);
   const Eigen::Isometry3d pose = asked.pose("pose");
   if (!recorded_ || recorded_->policy != policy || recorded_->pose.matrix() != pose.matrix()) {

@@ -52,9 +52,9 @@ class Session {
   /// The queries of both trees. Throws kArgumentInvalid before build().
   [[nodiscard]] Pairs& pairs();
   /// Both bodies as `ist occlusion` takes them.
-  [[nodiscard]] cli::Bodies whole();
+  [[nodiscard]] answers::Bodies whole();
   /// Gives the bodies the names of their files, and refuses two frames.
-  void name(cli::Bodies& bodies);
+  void name(answers::Bodies& bodies);
   [[nodiscard]] const std::vector<StepFront>& recorded(const Asked& asked);
 
   std::optional<PageBody> fixed_, moving_;

@@ -1,14 +1,13 @@
-#include "cli/occlusion/balance.h"
-
 #include <gtest/gtest.h>
 
+#include "answers/occlusion/sides.h"
 #include "cli/occlusion/bites.h"
 #include "support/shapes.h"
 
 namespace ist::test {
 namespace {
 
-using cli::Balance, cli::balance_of, cli::Division;
+using answers::Balance, answers::balance_of, answers::Division;
 using Vector = Eigen::Vector3d;
 
 const Division kAcross{Vector::UnitX(), 0, false, "+x", "-x"};

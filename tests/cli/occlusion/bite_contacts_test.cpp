@@ -1,15 +1,14 @@
-#include "cli/occlusion/bite_contacts.h"
-
 #include <gtest/gtest.h>
 
-#include "cli/occlusion/bite_hints.h"
+#include "answers/occlusion/bite.h"
+#include "answers/occlusion/bite_hints.h"
 #include "cli/occlusion/bites.h"
 #include "support/shapes.h"
 
 namespace ist::test {
 namespace {
 
-using cli::BiteContact, cli::contacts_of;
+using answers::BiteContact, answers::contacts_of;
 using Regions = std::vector<ContactRegion>;
 using Indices = std::vector<std::uint32_t>;
 using Vector = Eigen::Vector3d;
@@ -54,7 +53,7 @@ TEST(BiteContacts, ARegionThatFacesTwoMakesOneContactWithBoth) {
   EXPECT_EQ(contacts[0].least_distance, -0.3);
   EXPECT_EQ(contacts[0].closest, fixed[1].closest);
   EXPECT_EQ(contacts[0].centre.x(), (3 * 3 + 1 * 1 + 5 * 5) / 9.0);
-  cli::Bite bite;
+  answers::Bite bite;
   bite.fixed.surface.regions = fixed;
   bite.moving.surface.regions = moving;
   bite.number_contacts();
@@ -76,24 +75,24 @@ std::unique_ptr<MadeBite> with_bump_at(const Vector& at) {
 TEST(BiteHints, NameContactsFarAboveTheArchAndTheRegionWithoutThem) {
   const auto made = with_bump_at({5, 14, 10});
   ASSERT_EQ(made->bite.contacts.size(), 5U);
-  const std::optional<std::string> hint = cli::hint_of(made->bite);
+  const std::optional<std::string> hint = answers::hint_of(made->bite);
   ASSERT_TRUE(hint);
   EXPECT_TRUE(
       hint->starts_with("contact 5 lies 17 mm or more from the others, perhaps in the "
                         "joints: --region "))
       << *hint;
   EXPECT_TRUE(hint->ends_with(" leaves it out")) << *hint;
-  const std::string far = cli::hint_of(with_bump_at({5, 105, 78})->bite).value_or("");
+  const std::string far = answers::hint_of(with_bump_at({5, 105, 78})->bite).value_or("");
   EXPECT_TRUE(far.starts_with("contact 5 lies 130 mm or more from the others")) << far;
   // The other side of an arch is no joint, however far, nor is what is near.
-  EXPECT_FALSE(cli::hint_of(with_bump_at({5, 20, 0.5})->bite));
-  EXPECT_FALSE(cli::hint_of(with_bump_at({5, 4, 4})->bite));
-  EXPECT_FALSE(cli::hint_of(sphere_over_plate({0, 0, -0.05})->bite));
+  EXPECT_FALSE(answers::hint_of(with_bump_at({5, 20, 0.5})->bite));
+  EXPECT_FALSE(answers::hint_of(with_bump_at({5, 4, 4})->bite));
+  EXPECT_FALSE(answers::hint_of(sphere_over_plate({0, 0, -0.05})->bite));
 }
 
 TEST(BiteHints, WarnOfBodiesThatAreHardlyInOneCoordinateSystem) {
   const auto warning = [](double height) {
-    return cli::warning_of(sphere_over_plate({0, 0, height})->bite);
+    return answers::warning_of(sphere_over_plate({0, 0, height})->bite);
   };
   EXPECT_FALSE(warning(-0.05));
   EXPECT_FALSE(warning(3.5)) << "an open bite";
@@ -106,15 +105,15 @@ TEST(BiteHints, WarnOfBodiesThatAreHardlyInOneCoordinateSystem) {
 TEST(BiteHints, WarnOfAnOverlapThatIsNoBite) {
   const auto made = sphere_over_plate({0, 0, -0.5});
   made->bite.findings.depth.certain = DistanceInterval{4.6913, 4.7};
-  EXPECT_EQ(cli::warning_of(made->bite),
+  EXPECT_EQ(answers::warning_of(made->bite),
             "The scans overlap by 4.691 mm, more than a bite does: check that they are the upper "
             "and the lower jaw of one patient, in one coordinate system.");
   made->bite.findings.depth.certain = DistanceInterval{1.99, 2.01};
-  EXPECT_FALSE(cli::warning_of(made->bite));
+  EXPECT_FALSE(answers::warning_of(made->bite));
   made->bite.findings.depth.certain.reset();
-  EXPECT_FALSE(cli::warning_of(made->bite));
+  EXPECT_FALSE(answers::warning_of(made->bite));
   made->bite.findings.depth.at_vertices = 2.05;
-  EXPECT_TRUE(cli::warning_of(made->bite)
+  EXPECT_TRUE(answers::warning_of(made->bite)
                   .value_or("")
                   .starts_with("The scans overlap by at least 2.05 mm, "));
 }
@@ -124,7 +123,7 @@ TEST(BiteHints, WarnOfScansThatFaceTheSameWay) {
   const TriangleMesh up = plate(5, 1), down = inside_out(up);
   const auto warning = [&](const TriangleMesh& moving, double height) {
     const Eigen::Isometry3d pose(Eigen::Translation3d(0, 0, height));
-    return cli::warning_of(bite_of(up, moving, pose)->bite);
+    return answers::warning_of(bite_of(up, moving, pose)->bite);
   };
   for (const double height : {-0.1, 0.1, 1.0}) {
     EXPECT_FALSE(warning(down, height)) << height;

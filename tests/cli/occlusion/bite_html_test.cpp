@@ -9,11 +9,11 @@
 #include <regex>
 #include <stdexcept>
 
-#include "cli/occlusion/bite_hints.h"
+#include "answers/occlusion/bite_hints.h"
+#include "answers/occlusion/bite_numbers.h"
+#include "answers/occlusion/map_colours.h"
 #include "cli/occlusion/bite_view.h"
 #include "cli/occlusion/bites.h"
-#include "cli/occlusion/html/bite_numbers.h"
-#include "cli/occlusion/map_colours.h"
 #include "cli/occlusion/map_picture.h"
 #include "cli/occlusion/png_file.h"
 #include "support/effort.h"
@@ -25,7 +25,7 @@
 namespace ist::test {
 namespace {
 
-using cli::Bite, cli::BiteBody, cli::Colour;
+using answers::Bite, answers::BiteBody, answers::Colour;
 using nlohmann::json;
 using Cells = std::vector<std::string>;
 using Rows = std::vector<Cells>;
@@ -113,13 +113,13 @@ std::unique_ptr<MadeBite> full_bite() {
   bite.findings.contacts = 17;
   bite.findings.contact_depth = 0.0456;
   bite.findings.notes = {"a note for people"};
-  bite.numbers = cli::ToothNumbers::kFdi;
-  cli::ToothLabels labels;
+  bite.numbers = answers::ToothNumbers::kFdi;
+  answers::ToothLabels labels;
   for (const Triangle& t : bite.fixed.mesh->triangles) {
     const double x = bite.fixed.mesh->vertices[t[0]].x();
     labels.push_back(x > 0 ? 36 : x > -3 ? 0 : 46);
   }
-  bite.fixed.teeth = cli::teeth_of(bite.fixed.surface, *bite.fixed.mesh, labels);
+  bite.fixed.teeth = answers::teeth_of(bite.fixed.surface, *bite.fixed.mesh, labels);
   return made;
 }
 
@@ -153,7 +153,7 @@ TEST(BiteHtml, HoldsTheContactsByTheirNumbers) {
   bite.number_contacts();
   const Page page(bite);
   for (std::size_t i = 0; i < bite.contacts.size(); ++i) {
-    const cli::BiteContact& contact = bite.contacts[i];
+    const answers::BiteContact& contact = bite.contacts[i];
     const auto in = [&](const char* heading) {
       return cell(page.table(i < 2 ? "contacts" : "contacts-on-one"), {std::to_string(i + 1)},
                   heading);
@@ -258,7 +258,7 @@ TEST(BiteHtml, HoldsTheFindings) {
 TEST(BiteHtml, HoldsSharesBySideAndByTooth) {
   const std::unique_ptr<const MadeBite>& made = shown().made;
   const Page& page = shown().page;
-  const auto expect = [&](const char* head, const cli::Balance& balance) {
+  const auto expect = [&](const char* head, const answers::Balance& balance) {
     const auto in = [&](const char* heading) {
       return cell(page.table("shares"), {head}, heading);
     };
@@ -266,9 +266,9 @@ TEST(BiteHtml, HoldsSharesBySideAndByTooth) {
       return std::vector<double>{balance.shares.*member, balance.thinner.*member,
                                  balance.thicker.*member};
     };
-    expect_numbers(in("first side, %").substr(3), of(&cli::Balance::Shares::first), 0.05);
-    expect_numbers(in("second side, %").substr(3), of(&cli::Balance::Shares::second), 0.05);
-    expect_numbers(in("asymmetry, %"), of(&cli::Balance::Shares::asymmetry), 0.05);
+    expect_numbers(in("first side, %").substr(3), of(&answers::Balance::Shares::first), 0.05);
+    expect_numbers(in("second side, %").substr(3), of(&answers::Balance::Shares::second), 0.05);
+    expect_numbers(in("asymmetry, %"), of(&answers::Balance::Shares::asymmetry), 0.05);
     expect_place(in("centre, mm"), balance.centre);
   };
   expect("fixed: +x and -x", *made->bite.fixed.sides);
@@ -277,7 +277,7 @@ TEST(BiteHtml, HoldsSharesBySideAndByTooth) {
   expect("moving: +y and -y", *made->bite.moving.fore_aft);
   EXPECT_TRUE(page.says("+x and -x: split at the middle of the fixed body, x = 0 (assumed)"));
   ASSERT_EQ(page.table("teeth").size(), 3U);
-  for (const cli::Tooth& tooth : made->bite.fixed.teeth) {
+  for (const answers::Tooth& tooth : made->bite.fixed.teeth) {
     const auto in = [&](const char* heading) {
       return cell(page.table("teeth"), {std::to_string(tooth.number), "fixed"}, heading);
     };
@@ -329,7 +329,7 @@ TEST(BiteHtml, HoldsInputAndSettings) {
 TEST(BiteHtml, TheLegendHoldsEveryBand) {
   const auto& [made, page] = shown();
   const json& items = page.content["lists"]["legend"];
-  const auto bands = cli::map_bands(made->bite);
+  const auto bands = answers::map_bands(made->bite);
   ASSERT_EQ(items.size(), bands.size() + 3);
   for (std::size_t i = 0; i < bands.size(); ++i) {
     const std::string end =
@@ -341,8 +341,8 @@ TEST(BiteHtml, TheLegendHoldsEveryBand) {
 TEST(BiteHtml, SaysTheCaveatVerbatim) {
   const auto made = sphere_over_plate({0, 0, 0.5});
   const Page page(made->bite);
-  EXPECT_NE(page.content["all"].get<std::string>().find(cli::kCaveat), std::string::npos);
-  EXPECT_TRUE(page.says(cli::kCaveat));
+  EXPECT_NE(page.content["all"].get<std::string>().find(answers::kCaveat), std::string::npos);
+  EXPECT_TRUE(page.says(answers::kCaveat));
 }
 
 TEST(BiteHtml, NamesSidesOnlyAsTheDivisionsDo) {
@@ -399,7 +399,7 @@ TEST(BiteHtml, ShowsBothMapsAsPictures) {
   const auto made = sphere_over_plate({0, 0, -0.2});
   const Page page(made->bite);
   ASSERT_EQ(page.content["images"].size(), 2U);
-  const auto bands = cli::map_bands(made->bite);
+  const auto bands = answers::map_bands(made->bite);
   for (int i = 0; i < 2; ++i) {
     const json& image = page.content["images"][static_cast<std::size_t>(i)];
     EXPECT_EQ(image["width"], "900");
@@ -420,7 +420,7 @@ TEST(BiteHtml, ShowsBothMapsAsPictures) {
     return pixel_at(page.picture(0), static_cast<int>(place.x()), static_cast<int>(place.y()));
   };
   EXPECT_EQ(at(std::sqrt(4.5 * 4.5 - 3.8 * 3.8)), bands[3].colour);
-  EXPECT_EQ(at(-5.5), cli::kBareSurface);
+  EXPECT_EQ(at(-5.5), answers::kBareSurface);
   EXPECT_EQ(page.content["elements"]["figure"], 2);
 }
 
@@ -435,7 +435,7 @@ TEST(BiteHtml, SaysWhereNothingTouches) {
 
 TEST(BiteHtml, BeginsWithAWarningInPlaceOfEmptyTables) {
   const auto made = sphere_over_plate({0, 0, 100});
-  made->bite.warning = cli::warning_of(made->bite);
+  made->bite.warning = answers::warning_of(made->bite);
   const Page page(made->bite);
   EXPECT_EQ(page.content["lists"]["checks"].at(0),
             "The scans are 100 mm apart: they are probably not in one coordinate system. Register "
@@ -460,7 +460,7 @@ TEST(BiteHtml, SaysItsRegionAndItsHint) {
 
 TEST(BiteHtml, TellsTheOverlapOnce) {
   const auto made = sphere_over_plate({0, 0, -0.05});
-  made->bite.preset = &cli::presets().front();
+  made->bite.preset = &answers::presets().front();
   ASSERT_EQ(made->bite.preset->micrometres.front(), 0);
   const Rows rows = Page(made->bite).table("areas");
   EXPECT_EQ(rows.size(), 4U);
@@ -472,9 +472,9 @@ TEST(BiteHtml, TellsTheOverlapOnce) {
 TEST(BiteNumbers, Millimetres_HaveAtMostFourDigits) {
   Bite bite;
   const auto expect = [&](double lower, double upper, const char* words) {
-    EXPECT_EQ(cli::BiteNumbers(bite).millimetres(DistanceInterval{lower, upper}), words);
+    EXPECT_EQ(answers::BiteNumbers(bite).millimetres(DistanceInterval{lower, upper}), words);
     bite.units_per_mm = 1000;  // micrometres
-    EXPECT_EQ(cli::BiteNumbers(bite).millimetres(DistanceInterval{1000 * lower, 1000 * upper}),
+    EXPECT_EQ(answers::BiteNumbers(bite).millimetres(DistanceInterval{1000 * lower, 1000 * upper}),
               words);
     bite.units_per_mm = 1;
   };
@@ -487,10 +487,10 @@ TEST(BiteNumbers, Millimetres_HaveAtMostFourDigits) {
   expect(0, 0.0004, "less than 0.001 mm");
   expect(0, 0.0123, "0 to 0.013 mm");
   expect(0, 0, "0 mm");
-  EXPECT_EQ(cli::BiteNumbers::in_millimetres(4.6913), "4.691 mm");
-  EXPECT_EQ(cli::BiteNumbers::in_millimetres(130), "130 mm");
-  EXPECT_EQ(cli::BiteNumbers::in_millimetres(123456.7), "123457 mm");
-  EXPECT_EQ(cli::BiteNumbers::in_millimetres(2e-7), "less than 0.0001 mm");
+  EXPECT_EQ(answers::BiteNumbers::in_millimetres(4.6913), "4.691 mm");
+  EXPECT_EQ(answers::BiteNumbers::in_millimetres(130), "130 mm");
+  EXPECT_EQ(answers::BiteNumbers::in_millimetres(123456.7), "123457 mm");
+  EXPECT_EQ(answers::BiteNumbers::in_millimetres(2e-7), "less than 0.0001 mm");
 }
 
 TEST(BiteHtml, UnknownDepthOfOpenSurfaces_IsNotZero) {

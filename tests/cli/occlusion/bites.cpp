@@ -11,9 +11,9 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-cli::BiteBody body_of(const char* name, const SphereTree& tree, SurfaceOcclusion surface,
-                      const cli::Bite& bite, const Eigen::Isometry3d& to_fixed) {
-  cli::BiteBody body;
+answers::BiteBody body_of(const char* name, const SphereTree& tree, SurfaceOcclusion surface,
+                          const answers::Bite& bite, const Eigen::Isometry3d& to_fixed) {
+  answers::BiteBody body;
   body.name = name;
   body.hash = "0123456789abcdef";
   body.mesh = tree.triangles();
@@ -23,16 +23,16 @@ cli::BiteBody body_of(const char* name, const SphereTree& tree, SurfaceOcclusion
   for (const double micrometres : bite.preset->micrometres) {
     body.areas.push_back(micrometres > 0 ? surface.areas[limit++] : surface.penetrating_area);
   }
-  body.sides = cli::balance_of(surface, *body.mesh, to_fixed, bite.sides);
-  body.fore_aft = cli::balance_of(surface, *body.mesh, to_fixed, bite.fore_aft);
+  body.sides = answers::balance_of(surface, *body.mesh, to_fixed, bite.sides);
+  body.fore_aft = answers::balance_of(surface, *body.mesh, to_fixed, bite.fore_aft);
   body.surface = std::move(surface);
   return body;
 }
 
 }  // namespace
 
-const cli::Preset& preset_of(std::string_view name) {
-  for (const cli::Preset& preset : cli::presets()) {
+const answers::Preset& preset_of(std::string_view name) {
+  for (const answers::Preset& preset : answers::presets()) {
     if (preset.name == name) return preset;
   }
   throw std::invalid_argument("no such preset");
@@ -42,7 +42,7 @@ std::unique_ptr<MadeBite> bite_of(const TriangleMesh& fixed, const TriangleMesh&
                                   const Eigen::Isometry3d& pose, std::string_view preset) {
   auto made = std::make_unique<MadeBite>(MadeBite{
       build_tree(fixed, {.voxel_size = 0.5}), build_tree(moving, {.voxel_size = 0.5}), {}});
-  cli::Bite& bite = made->bite;
+  answers::Bite& bite = made->bite;
   bite.pose = pose;
   bite.unit = "mm";
   bite.preset = &preset_of(preset);

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string_view>
 
-#include "cli/occlusion/bite.h"
+#include "answers/occlusion/bite.h"
 #include "ist/query/query.h"
 
 namespace ist::test {
@@ -12,7 +12,7 @@ namespace ist::test {
 /// A bite, and what it refers to.
 struct MadeBite {
   SphereTree fixed, moving;
-  cli::Bite bite;
+  answers::Bite bite;
 };
 
 /// Measures the bite of two bodies as the command does: areas at the limits of the preset, touch,
@@ -24,7 +24,7 @@ struct MadeBite {
     std::string_view preset = "scan");
 
 /// The preset of that name.
-[[nodiscard]] const cli::Preset& preset_of(std::string_view name);
+[[nodiscard]] const answers::Preset& preset_of(std::string_view name);
 
 /// A flat plate about the z axis, of squares of two triangles, normals along z.
 [[nodiscard]] TriangleMesh plate(double half, double edge);

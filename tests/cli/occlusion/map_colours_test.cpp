@@ -1,4 +1,4 @@
-#include "cli/occlusion/map_colours.h"
+#include "answers/occlusion/map_colours.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace ist::test {
 namespace {
 
-using cli::Bite, cli::Colour, cli::map_bands, cli::map_colour, cli::MapBand;
+using answers::Bite, answers::Colour, answers::map_bands, answers::map_colour, answers::MapBand;
 
 Bite bite_with(std::string_view preset) {
   Bite bite;
@@ -37,7 +37,7 @@ TEST(MapColours, BandsFollowThePresetWithoutGaps) {
   EXPECT_EQ(limits_of(map_bands(bite_with("scan"))), (std::vector<double>{-0.05, 0, 0.1, 2}));
   EXPECT_EQ(limits_of(map_bands(bite_with("owens"))),
             (std::vector<double>{-0.05, 0, 0.05, 0.35, 2}));
-  for (const cli::Preset& preset : cli::presets()) {
+  for (const answers::Preset& preset : answers::presets()) {
     const auto bands = map_bands(bite_with(preset.name));
     EXPECT_EQ(bands.front().from, -HUGE_VAL);
     for (std::size_t i = 1; i < bands.size(); ++i) EXPECT_EQ(bands[i].from, bands[i - 1].to);
@@ -81,7 +81,7 @@ bool is_warm(const Colour& colour) { return colour[0] > 180 && colour[0] > colou
 bool is_purple(const Colour& colour) { return colour[0] > colour[1] && colour[2] > colour[1]; }
 
 TEST(MapColours, OverlapIsPurpleContactIsWarmTheRestIsNot) {
-  for (const cli::Preset& preset : cli::presets()) {
+  for (const answers::Preset& preset : answers::presets()) {
     const auto bands = map_bands(bite_with(preset.name));
     EXPECT_TRUE(is_purple(map_colour(-3, bands)));
     EXPECT_TRUE(is_purple(map_colour(0, bands)));
@@ -100,8 +100,8 @@ TEST(MapColours, ALimitBelongsToTheBandThatEndsThere) {
   EXPECT_EQ(map_colour(bands[2].to, bands), bands[2].colour);
   EXPECT_EQ(map_colour(std::nextafter(bands[2].to, 1), bands), bands[3].colour);
   EXPECT_EQ(map_colour(2, bands), bands[4].colour);
-  EXPECT_EQ(map_colour(std::nextafter(2.0, 3), bands), cli::kBareSurface);
-  EXPECT_EQ(map_colour(std::nan(""), bands), cli::kBareSurface);
+  EXPECT_EQ(map_colour(std::nextafter(2.0, 3), bands), answers::kBareSurface);
+  EXPECT_EQ(map_colour(std::nan(""), bands), answers::kBareSurface);
 }
 
 // Vienot 1999: how the colours look without one kind of cones. 0: with all of them.
@@ -124,11 +124,11 @@ Eigen::Vector3d seen_without(char cones, const Colour& colour) {
 }
 
 TEST(MapColours, NeighboursDifferToAllEyes) {
-  for (const cli::Preset& preset : cli::presets()) {
+  for (const answers::Preset& preset : answers::presets()) {
     const auto bands = map_bands(bite_with(preset.name));
     for (const char cones : {'0', 'l', 'm'}) {
       for (std::size_t i = 0; i < bands.size(); ++i) {
-        const Colour next = i + 1 < bands.size() ? bands[i + 1].colour : cli::kBareSurface;
+        const Colour next = i + 1 < bands.size() ? bands[i + 1].colour : answers::kBareSurface;
         const double differ =
             (seen_without(cones, bands[i].colour) - seen_without(cones, next)).norm();
         EXPECT_GT(differ, 12) << preset.name << " " << bands[i].words << " " << cones;

@@ -9,13 +9,12 @@
 
 #include "cli/occlusion/bites.h"
 #include "cli/occlusion/png_file.h"
-#include "cli/occlusion/png_image.h"
 #include "support/shapes.h"
 
 namespace ist::test {
 namespace {
 
-using cli::Bite, cli::BiteView, cli::BiteViews, cli::Colour, cli::draw_map, cli::Picture;
+using answers::Bite, cli::BiteView, cli::BiteViews, answers::Colour, cli::draw_map, cli::Picture;
 using Vector = Eigen::Vector3d;
 
 constexpr int kWidth = 450, kHeight = 350;
@@ -89,7 +88,7 @@ TEST(MapPicture, PlateUnderASphereHasTheColoursOfItsDistances) {
     const Vector lowest(1, -2, -0.2);
     auto made = sphere_over_plate(lowest, preset);
     made->bite.scanner_band = 0;  // nothing is hatched
-    const auto bands = cli::map_bands(made->bite);
+    const auto bands = answers::map_bands(made->bite);
     const BiteView view = cli::bite_views(made->bite, kWidth, kHeight).fixed;
     const Picture picture = draw_map(made->bite.fixed, view, bands, kWidth, kHeight);
     std::map<Colour, int> seen;
@@ -99,9 +98,9 @@ TEST(MapPicture, PlateUnderASphereHasTheColoursOfItsDistances) {
         const Vector point = view.middle + view.pixel * ((x + 0.5 - 0.5 * kWidth) * view.across -
                                                          (y + 0.5 - 0.5 * kHeight) * view.up);
         const double distance = distance_at({point.x(), point.y(), 0}, lowest);
-        const Colour expected = cli::map_colour(distance, bands);
-        const bool border = cli::map_colour(distance - 0.1, bands) != expected ||
-                            cli::map_colour(distance + 0.1, bands) != expected;
+        const Colour expected = answers::map_colour(distance, bands);
+        const bool border = answers::map_colour(distance - 0.1, bands) != expected ||
+                            answers::map_colour(distance + 0.1, bands) != expected;
         const bool dot = (point - lowest).head<2>().norm() < 6 * view.pixel;
         if (distance > 1.7 || border || dot) continue;
         ++seen[expected];
@@ -118,7 +117,7 @@ TEST(MapPicture, PlateUnderASphereHasTheColoursOfItsDistances) {
 TEST(MapPicture, BandsBelowTheScannerBandAreHatched) {
   auto made = sphere_over_plate({0, 0, -0.04});  // it overlaps by less than 50 µm
   const auto count = [&](const Colour& colour) {
-    const auto bands = cli::map_bands(made->bite);
+    const auto bands = answers::map_bands(made->bite);
     const BiteView view = cli::bite_views(made->bite, kWidth, kHeight).fixed;
     const Picture picture = draw_map(made->bite.fixed, view, bands, kWidth, kHeight);
     int pixels = 0;
@@ -127,7 +126,7 @@ TEST(MapPicture, BandsBelowTheScannerBandAreHatched) {
     }
     return pixels;
   };
-  const Colour white{255, 255, 255}, overlap = cli::map_bands(made->bite)[1].colour;
+  const Colour white{255, 255, 255}, overlap = answers::map_bands(made->bite)[1].colour;
   const int hatched = count(overlap), white_with = count(white);
   made->bite.scanner_band = 0;
   const int plain = count(overlap), white_without = count(white);
@@ -139,7 +138,7 @@ TEST(MapPicture, BandsBelowTheScannerBandAreHatched) {
 TEST(MapPicture, DotsShowTheClosestPointsAndWhetherTheyAreOnBothBodies) {
   auto made = sphere_over_plate({1, -2, -0.2});
   ASSERT_EQ(made->bite.fixed.surface.regions.size(), 1U);
-  const auto bands = cli::map_bands(made->bite);
+  const auto bands = answers::map_bands(made->bite);
   const BiteView view = cli::bite_views(made->bite, kWidth, kHeight).fixed;
   const auto dot = [&] {
     const Picture picture = draw_map(made->bite.fixed, view, bands, kWidth, kHeight);
@@ -156,8 +155,8 @@ TEST(MapPicture, DotsShowTheClosestPointsAndWhetherTheyAreOnBothBodies) {
 TEST(MapPicture, StaysBareWhereTheDistanceIsUnknownOrASignIsWrong) {
   auto made = sphere_over_plate({0, 0, 0.5});
   made->bite.scanner_band = 0;
-  cli::BiteBody& body = made->bite.fixed;
-  const auto bands = cli::map_bands(made->bite);
+  answers::BiteBody& body = made->bite.fixed;
+  const auto bands = answers::map_bands(made->bite);
   const BiteView view = cli::bite_views(made->bite, kWidth, kHeight).fixed;
   const auto middle = [&] {
     return pixel_at(draw_map(body, view, bands, kWidth, kHeight), kWidth / 2, kHeight / 2);
@@ -170,19 +169,19 @@ TEST(MapPicture, StaysBareWhereTheDistanceIsUnknownOrASignIsWrong) {
   double& distance = body.surface.vertices[nearest].distance;
   for (const double bad : {-distance, std::nan("")}) {
     const double good = std::exchange(distance, bad);
-    EXPECT_EQ(middle(), cli::kBareSurface);
+    EXPECT_EQ(middle(), answers::kBareSurface);
     distance = good;
   }
 }
 
 TEST(MapPicture, ShowsTheSurfaceNearestToTheEyeAndInnerSidesGrey) {
   auto made = sphere_over_plate({0, 0, -0.2});
-  const auto bands = cli::map_bands(made->bite);
+  const auto bands = answers::map_bands(made->bite);
   const BiteView view = cli::bite_views(made->bite, kWidth, kHeight).fixed;
   // From above the sphere hides its own contact.
   const Picture above = draw_map(made->bite.moving, view, bands, kWidth, kHeight);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(pixel_at(above, kWidth / 2, kHeight / 2)[i], cli::kBareSurface[i], 2);
+    EXPECT_NEAR(pixel_at(above, kWidth / 2, kHeight / 2)[i], answers::kBareSurface[i], 2);
   }
   BiteView below = view;
   below.up = -below.up;

@@ -1,22 +1,21 @@
-#include "cli/occlusion/open_book.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <utility>
 
-#include "cli/occlusion/bite_direction.h"
+#include "answers/occlusion/bite_direction.h"
+#include "answers/occlusion/bite_surfaces.h"
 #include "cli/occlusion/bites.h"
 #include "support/shapes.h"
 
 namespace ist::test {
 namespace {
 
-using cli::Bite, cli::BiteBody, cli::BookLayout, cli::OpenedBook;
+using answers::Bite, answers::BiteBody, answers::BookLayout, answers::OpenedBook;
 using Vector = Eigen::Vector3d;
 
 Vector between(const MadeBite& made) {
-  return cli::direction_between(made.bite.fixed, made.bite.moving, made.bite.reach);
+  return answers::direction_between(made.bite.fixed, made.bite.moving, made.bite.reach);
 }
 
 // The arch of an upper jaw as a scan has it: open, its teeth at z = 0 look down, its front is -y.
@@ -71,17 +70,17 @@ TEST(BiteDirection, OutOfReach_GoesByTheBoxes) {
 
 TEST(BiteDirection, FrontIsTheNarrowerEnd) {
   auto made = bite_of(upper_arch(), mandible());
-  EXPECT_EQ(cli::directions_of(made->bite).front, -Vector::UnitY());
-  EXPECT_EQ(cli::directions_of(made->bite).across, Vector::UnitX());
+  EXPECT_EQ(answers::directions_of(made->bite).front, -Vector::UnitY());
+  EXPECT_EQ(answers::directions_of(made->bite).across, Vector::UnitX());
   made->bite.fore_aft.first = "anterior";  // as the user names it
-  EXPECT_EQ(cli::directions_of(made->bite).front, Vector::UnitY());
+  EXPECT_EQ(answers::directions_of(made->bite).front, Vector::UnitY());
   const Eigen::Matrix3d about = Eigen::AngleAxisd(M_PI, Vector::UnitZ()).toRotationMatrix();
   const auto back = bite_of(turned(upper_arch(), about), turned(mandible(), about));
-  EXPECT_EQ(cli::directions_of(back->bite).front, Vector::UnitY());
+  EXPECT_EQ(answers::directions_of(back->bite).front, Vector::UnitY());
   const auto lying = bite_of(turned(upper_arch(), y_up()), turned(mandible(), y_up()));
-  EXPECT_TRUE(cli::directions_of(lying->bite).front.isApprox(Vector::UnitZ(), 1e-12));
+  EXPECT_TRUE(answers::directions_of(lying->bite).front.isApprox(Vector::UnitZ(), 1e-12));
   const auto round = sphere_over_plate({0, 0, -0.05});  // both ends are as wide
-  EXPECT_EQ(cli::directions_of(round->bite).front, -Vector::UnitY());
+  EXPECT_EQ(answers::directions_of(round->bite).front, -Vector::UnitY());
 }
 
 struct Seen {
@@ -91,7 +90,7 @@ struct Seen {
 
 Seen seen(const BiteBody& body, const Eigen::Isometry3d& place, const Vector& towards) {
   Seen all;
-  for (const cli::NearTriangle& one : cli::near_triangles(body)) {
+  for (const answers::NearTriangle& one : answers::near_triangles(body)) {
     all.normal += place.linear() * one.area;
   }
   all.normal.normalize();
@@ -107,9 +106,9 @@ TEST(OpenBook, OcclusalFacesLookAtTheViewer) {
   const Eigen::Matrix3d tilt = Eigen::AngleAxisd(0.7, Vector(1, 2, 2) / 3).toRotationMatrix();
   for (const Eigen::Matrix3d& turn : {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), y_up(), tilt}) {
     const auto made = bite_of(turned(upper_arch(), turn), turned(mandible(), turn));
-    const Vector towards = cli::directions_of(made->bite).towards;
+    const Vector towards = answers::directions_of(made->bite).towards;
     for (const BookLayout layout : {BookLayout::kBeside, BookLayout::kAbove}) {
-      const OpenedBook book = cli::opened(made->bite, 3, layout);
+      const OpenedBook book = answers::opened(made->bite, 3, layout);
       const Seen fixed = seen(made->bite.fixed, book.fixed, towards),
                  moving = seen(made->bite.moving, book.moving, towards);
       EXPECT_GT(fixed.normal.dot(book.viewer), 0.999);
@@ -124,9 +123,9 @@ TEST(OpenBook, OcclusalFacesLookAtTheViewer) {
 
 TEST(OpenBook, MidlineIsUpright) {
   const auto made = bite_of(upper_arch(), mandible());
-  const cli::BiteDirections way = cli::directions_of(made->bite);
-  const OpenedBook beside = cli::opened(made->bite, 3),
-                   above = cli::opened(made->bite, 3, BookLayout::kAbove);
+  const answers::BiteDirections way = answers::directions_of(made->bite);
+  const OpenedBook beside = answers::opened(made->bite, 3),
+                   above = answers::opened(made->bite, 3, BookLayout::kAbove);
   EXPECT_TRUE((beside.fixed.linear() * way.front).isApprox(beside.up, 1e-12));
   EXPECT_TRUE((beside.moving.linear() * way.front).isApprox(beside.up, 1e-12));
   EXPECT_TRUE((above.fixed.linear() * way.front).isApprox(above.up, 1e-12));

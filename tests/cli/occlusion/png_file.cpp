@@ -22,7 +22,7 @@ cli::Picture decoded(const std::string& png) {
   return picture;
 }
 
-cli::Colour pixel_at(const cli::Picture& picture, int x, int y) {
+answers::Colour pixel_at(const cli::Picture& picture, int x, int y) {
   const std::size_t at =
       3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
            static_cast<std::size_t>(x));

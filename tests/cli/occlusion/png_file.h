@@ -10,6 +10,6 @@ namespace ist::test {
 [[nodiscard]] cli::Picture decoded(const std::string& png);
 
 /// The pixel at a place, whose y runs down.
-[[nodiscard]] cli::Colour pixel_at(const cli::Picture& picture, int x, int y);
+[[nodiscard]] answers::Colour pixel_at(const cli::Picture& picture, int x, int y);
 
 }  // namespace ist::test

@@ -1,16 +1,15 @@
-#include "cli/occlusion/teeth.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "answers/occlusion/bite.h"
 #include "cli/occlusion/bites.h"
 #include "support/shapes.h"
 
 namespace ist::test {
 namespace {
 
-using cli::teeth_of, cli::ToothLabels;
+using answers::teeth_of, answers::ToothLabels;
 
 // Four triangles, six vertices: 0 2 4 / 1 3 5.
 const TriangleMesh kStrip = open_strip(2);
@@ -53,7 +52,7 @@ TEST(Teeth, BeyondTheReachHaveNoDistance) {
 
 TEST(Teeth, OfABiteShareAllThatIsLabelled) {
   const auto made = sphere_over_plate({1, 0, -0.05});
-  const cli::BiteBody& body = made->bite.fixed;
+  const answers::BiteBody& body = made->bite.fixed;
   ToothLabels labels;
   for (const Triangle& t : body.mesh->triangles) {
     labels.push_back(

@@ -7,14 +7,16 @@
 #include <cmath>
 #include <vector>
 
+#include "answers/occlusion/map_colours.h"
 #include "cli/occlusion/bite_view.h"
 #include "cli/occlusion/html/html_text.h"
-#include "cli/occlusion/map_colours.h"
 #include "cli/occlusion/map_picture.h"
-#include "cli/occlusion/png_image.h"
 #include "ist/base/parallel.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 constexpr int kWidth = 900, kHeight = 700;  // pixels

@@ -6,10 +6,13 @@
 #include <optional>
 #include <vector>
 
-#include "cli/occlusion/html/bite_numbers.h"
+#include "answers/occlusion/bite_numbers.h"
 #include "cli/occlusion/html/html_text.h"
 
 namespace ist::cli {
+
+using namespace answers;
+
 namespace {
 
 constexpr const char* kNoContacts = "<p>No contacts.</p>\n";
