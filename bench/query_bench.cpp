@@ -16,6 +16,7 @@
 
 #include "ist/query/query.h"
 #include "ist/query/workers/resident_worker.h"
+#include "ist/query/workers/sharing.h"
 #include "simd/dispatch.h"
 #include "support/bodies.h"
 #include "support/latencies.h"
@@ -103,7 +104,7 @@ class Closing {
     const auto after = ResidentWorker::usage();
     helper_share_ = static_cast<double>((after.cpu - before.cpu).count()) /
                     static_cast<double>((after.wall - before.wall).count());
-    sharing_ = query.sharing();
+    sharing_ = sharing_of(query);
     bytes_ = query.bytes();
   }
 

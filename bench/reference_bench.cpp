@@ -25,9 +25,9 @@ void leaf_pairs(benchmark::State& state, double voxel_size, SpherePolicy policy,
   state.counters["per_test"] = benchmark::Counter(
       tests, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   if (source == SphereSource::kSaved) {
-    state.counters["saved_MB"] =
-        static_cast<double>(sizeof(Ball)) / 1e6 *
-        static_cast<double>(fixed.parts().octree.node_count() + moving.parts().octree.node_count());
+    state.counters["saved_MB"] = static_cast<double>(sizeof(Ball)) / 1e6 *
+                                 static_cast<double>(parts_of(fixed).octree.node_count() +
+                                                     parts_of(moving).octree.node_count());
   }
   state.SetLabel(pair_name());
 }

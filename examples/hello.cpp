@@ -1,5 +1,6 @@
 // Do two jaws touch, and how far apart are they? hello.c and hello.py print the same lines.
 #include <ist/ist.h>
+#include <ist/models/models.h>
 
 #include <cstdio>
 #include <exception>

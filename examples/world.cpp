@@ -1,5 +1,6 @@
 // Which of four bodies touch each other, before and after one of them moves?
 #include <ist/ist.h>
+#include <ist/models/models.h>
 
 #include <cstdio>
 #include <exception>

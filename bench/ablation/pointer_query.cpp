@@ -68,10 +68,10 @@ class PointerDescent {
                             int slot) const {
     Visit visit;
     visit.node = &node;
-    visit.ball = is_implicit(policy_) ? implicit_ball(policy_, tree.parts().lattice, node.level,
+    visit.ball = is_implicit(policy_) ? implicit_ball(policy_, parts_of(tree).lattice, node.level,
                                                       node.cube_centre, node.mask)
-                                      : tree.parts().saved_ball(node.level, parent, slot);
-    if constexpr (kSlabs) visit.slab = tree.parts().saved_slab(node.level, parent, slot);
+                                      : parts_of(tree).saved_ball(node.level, parent, slot);
+    if constexpr (kSlabs) visit.slab = parts_of(tree).saved_slab(node.level, parent, slot);
     return visit;
   }
 
@@ -112,8 +112,8 @@ class PointerDescent {
       found_.push_back({a.node->index, b.node->index});
       return;
     }
-    const double edge_a = fixed_.tree.parts().lattice.edge(a.node->level);
-    const double edge_b = moving_.tree.parts().lattice.edge(b.node->level);
+    const double edge_a = parts_of(fixed_.tree).lattice.edge(a.node->level);
+    const double edge_b = parts_of(moving_.tree).lattice.edge(b.node->level);
     Children of_a, of_b;
     if (descends(a.node->level, edge_a, b.node->level, edge_b)) {
       open(fixed_.tree, *a.node, of_a);
@@ -148,7 +148,7 @@ class PointerDescent {
 QueryResult PointerQuery::leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out) {
   const ScopedFloatEnvironment environment;
   const std::optional<RelativePose> relative =
-      relative_pose(pose, fixed_.tree.parts().lattice, moving_.tree.parts().lattice);
+      relative_pose(pose, parts_of(fixed_.tree).lattice, parts_of(moving_.tree).lattice);
   if (!relative) {
     QueryResult result;
     result.status = QueryStatus::kInvalidPose;

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <span>
 
+#include "ist/query/workers/sharing.h"
 #include "support/pacer.h"
 
 namespace ist::bench {
@@ -49,10 +50,6 @@ std::vector<Answer> answers_of_twin(const std::pair<SphereTree, SphereTree>& tre
   std::vector<Answer> answers;
   for (const Eigen::Isometry3d& pose : poses) answers.push_back(answer(twin, pose, room));
   return answers;
-}
-
-Sharing sharing_of(const Query& query) {
-  return query.workers() == 2 ? query.sharing() : Sharing{};
 }
 
 }  // namespace

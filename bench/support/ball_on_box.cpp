@@ -109,7 +109,7 @@ BallOnBox make_ball_on_box(const std::set<std::string>& effects) {
   }
   detail::add_two_bodies(parts, frames, radius, std::move(contacts), std::move(proximity));
   made.device = std::make_unique<HandDevice>(HandSettings{.plan = plan_from(start)});
-  made.simulation = std::make_unique<Simulation>(std::move(parts));
+  made.simulation = std::make_unique<Simulation>(detail::simulation_from(std::move(parts)));
   return made;
 }
 

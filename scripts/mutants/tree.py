@@ -15,7 +15,7 @@ MUTANTS = [
              "half * kTableRadii[radius_code] + 0 * leaf_excess(level, radius_code)")],
            ["tree_test NestedBall*", "search_test *ImplicitPolicies*"]),
     Mutant("root-not-nested", "the roots are tested in double with the published balls",
-           [("src/ist/query/traversal/root_test.cpp", "tree.parts().nested_ball(", "tree.parts().ball(")],
+           [("src/ist/query/traversal/root_test.cpp", "parts_of(tree).nested_ball(", "parts_of(tree).ball(")],
            ["search_test *ImplicitPolicies*"]),
     Mutant("ball-rounded-down", "a saved radius is rounded down",
            [(NODE_BOUNDS, "std::ceil(radius / (PackedBall::kUnit * parent_edge))",

@@ -8,6 +8,7 @@
 
 #include "answers/bodies.h"
 #include "answers/depth_meter.h"
+#include "ist/query/inside.h"
 #include "ist/query/query.h"
 
 namespace ist::answers {

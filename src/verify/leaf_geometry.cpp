@@ -93,8 +93,8 @@ bool CubeAxes::surely_meet(const Vector3d& apart) const noexcept {
 
 std::vector<ClippedTriangle> leaf_polygons(const SphereTree& tree, std::uint32_t leaf,
                                            std::uint64_t code) {
-  const LeafTriangles& triangles = *tree.parts().triangles;
-  const Lattice& lattice = tree.parts().lattice;
+  const LeafTriangles& triangles = *parts_of(tree).triangles;
+  const Lattice& lattice = parts_of(tree).lattice;
   const Cell cell = morton_decode(code);
   const Vector3d low(cell[0], cell[1], cell[2]);
   const Vector3d root = Vector3d::Constant(lattice.root_centre());

@@ -18,13 +18,17 @@ class Verify : public CliTest {
     options.spheres = SpherePolicy::kTight;
     options.keep_triangles = true;
     const SphereTree tree = build_tree(icosphere(2, 2), options);
-    TreeParts parts{tree.parts().lattice, tree.parts().octree, tree.orientation(),
-                    tree.parts().normals, tree.parts().bounds, tree.parts().triangles,
+    TreeParts parts{parts_of(tree).lattice,
+                    parts_of(tree).octree,
+                    tree.orientation(),
+                    parts_of(tree).normals,
+                    parts_of(tree).bounds,
+                    parts_of(tree).triangles,
                     std::nullopt};
     for (BallBlock& block : parts.bounds.balls[0]) {
       for (std::uint16_t& radius : block.r) radius = static_cast<std::uint16_t>(radius / 16);
     }
-    write_tree(SphereTree(std::move(parts)), path("lies.ist"));
+    write_tree(tree_from(std::move(parts)), path("lies.ist"));
     return path("lies.ist");
   }
 };

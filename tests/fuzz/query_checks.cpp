@@ -205,8 +205,8 @@ void QueryChecks::check_exact(Query& scalar, Query& best, const Asked& asked,
   require(std::adjacent_find(pairs.begin(), pairs.end(), std::greater_equal<>()) == pairs.end(),
           "triangles are not in order");
   for (const TrianglePair& pair : pairs) {
-    require(pair.fixed < fixed_.parts().triangles->mesh.triangles.size() &&
-                pair.moving < moving_.parts().triangles->mesh.triangles.size(),
+    require(pair.fixed < parts_of(fixed_).triangles->mesh.triangles.size() &&
+                pair.moving < parts_of(moving_).triangles->mesh.triangles.size(),
             "a pair is of no triangle");
   }
   const ist::Answer found = best.intersects(pose).answer;

@@ -30,7 +30,7 @@ Simulation HapticBodies::simulation(std::unique_ptr<Effect> other) const {
                                          ToolContactOptions{SpherePolicy::kSlab, 0.5}));
   parts.effects.push_back(std::make_unique<ContactEffect>(ContactSettings{2000, 0.5}));
   if (other) parts.effects.push_back(std::move(other));
-  return Simulation(std::move(parts));
+  return detail::simulation_from(std::move(parts));
 }
 
 HapticBodies ball_over_box() {

@@ -64,7 +64,7 @@ Simulation HumanPair::simulation(const CouplingSettings& coupling) const {
   parts.effects.push_back(std::move(contact));
   parts.effects.push_back(std::make_unique<FrictionEffect>(FrictionSettings{0.3, 0.2, 1000}, load));
   parts.effects.push_back(std::make_unique<DampingEffect>(DampingSettings{1}));
-  return Simulation(std::move(parts));
+  return detail::simulation_from(std::move(parts));
 }
 
 std::vector<Waypoint> presses(const HumanPair& pair, int count) {

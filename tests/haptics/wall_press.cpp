@@ -74,7 +74,7 @@ Simulation simulation_of(const Wall& wall, const PressSettings& settings) {
                                          ToolContactOptions{SpherePolicy::kSlab, 0.5}));
   parts.effects.push_back(
       std::make_unique<ContactEffect>(ContactSettings{wall.contact_stiffness, 0.5}));
-  return Simulation(std::move(parts));
+  return detail::simulation_from(std::move(parts));
 }
 
 Vector6 axis(int i, double sign) {

@@ -8,6 +8,7 @@
 
 #include "ist/base/error.h"
 #include "ist/mesh/mesh.h"
+#include "ist/query/inside.h"
 #include "ist/query/query.h"
 #include "support/data_dir.h"
 #include "support/errors.h"

@@ -3,6 +3,7 @@
 #include <ist/haptics.h>
 #include <ist/ist.h>
 #include <ist/measure.h>
+#include <ist/query/reference/reference_query.h>
 #include <ist/scene.h>
 
 #include <array>

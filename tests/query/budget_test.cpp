@@ -148,13 +148,13 @@ struct Watched : PairLister {
 void expect_looks(const SphereTree& fixed, const SphereTree& moving, const Eigen::Isometry3d& at) {
   const SearchPlan plan(fixed, moving, SpherePolicy::kSlab);
   Search search(plan, select_kernels(""), 1 << 16);
-  const auto relative = relative_pose(at, fixed.parts().lattice, moving.parts().lattice);
+  const auto relative = relative_pose(at, parts_of(fixed).lattice, parts_of(moving).lattice);
   const SearchPose pose = to_float(*relative, lengths_of(fixed, SpherePolicy::kSlab),
                                    lengths_of(moving, SpherePolicy::kSlab));
   std::vector<LeafPair> out(1 << 20), all_out(1 << 20);
   LeafPairSink sink(plan, select_kernels(""), out), all_sink(plan, select_kernels(""), all_out);
-  const Budget budget{.deadline = Budget::Clock::time_point(std::chrono::seconds(1)),
-                      .now = FakeClock::now};
+  const Budget budget{.deadline = Budget::Clock::time_point(std::chrono::seconds(1))};
+  const ScopedBudgetClock clock(FakeClock::now);
   Watched watched(pose, sink, BudgetMeter(budget));
   EXPECT_EQ(search.run(watched), plan.steps().size());
   EXPECT_LE(watched.most_tests, 500u);  // as Budget states
@@ -179,6 +179,7 @@ TEST(WithinADeadline, TheClockIsReadOftenEnough) {
 }
 
 TEST(WithinADeadline, TheSearchEndsAtTheFirstLookAfterIt) {
+  const ScopedBudgetClock clock(LateClock::now);
   const Scene& scene = solids()[0];
   for (const SpherePolicy policy : kSpherePolicies) {
     Query query(scene.fixed, scene.moving, options_of(policy));
@@ -232,10 +233,9 @@ TEST(BudgetMeter, AllowsWhatIsLeft) {
 
 TEST(BudgetMeter, LeavesABudgetOfTheRest) {
   const auto deadline = Budget::Clock::time_point(std::chrono::seconds(1));
-  BudgetMeter meter({.tests = 1000, .deadline = deadline, .now = FakeClock::now}, 100);
+  BudgetMeter meter({.tests = 1000, .deadline = deadline}, 100);
   EXPECT_EQ(meter.rest().tests, 900u);
   EXPECT_EQ(meter.rest().deadline, deadline);
-  EXPECT_EQ(meter.rest().now, &FakeClock::now);
   meter.spend(2000);
   EXPECT_EQ(meter.rest().tests, 0u);
   EXPECT_FALSE(BudgetMeter({}, 100).rest().is_limited());
@@ -245,7 +245,8 @@ TEST(BudgetMeter, LeavesABudgetOfTheRest) {
 
 TEST(BudgetMeter, WithoutLimitsAllowsAllAndReadsNoClock) {
   FakeClock::looks = 0;
-  BudgetMeter meter({.now = FakeClock::now});
+  const ScopedBudgetClock clock(FakeClock::now);
+  BudgetMeter meter(Budget{});
   EXPECT_FALSE(meter.is_limited());
   for (int i = 0; i < 100; ++i) {
     EXPECT_TRUE(meter.allows(1'000'000'000));
@@ -265,6 +266,7 @@ TEST(BudgetMeter, OfTestsAllowsNoMore) {
 }
 
 TEST(BudgetMeter, OfTimeReadsTheClockAtLeastEvery500Tests) {
+  const ScopedBudgetClock clock(LateClock::now);
   BudgetMeter meter(LateClock::budget_of(3));
   std::uint64_t unwatched = 0;
   while (meter.allows(16)) {
@@ -278,8 +280,8 @@ TEST(BudgetMeter, OfTimeReadsTheClockAtLeastEvery500Tests) {
 
 TEST(BudgetMeter, HasOneRuleForTheClock) {
   FakeClock::looks = 0;
-  BudgetMeter meter(
-      {.deadline = Budget::Clock::time_point(std::chrono::seconds(1)), .now = FakeClock::now});
+  const ScopedBudgetClock clock(FakeClock::now);
+  BudgetMeter meter({.deadline = Budget::Clock::time_point(std::chrono::seconds(1))});
   EXPECT_EQ(meter.allow(), 500u);
   EXPECT_EQ(FakeClock::looks, 1u);
   meter.spend(300);

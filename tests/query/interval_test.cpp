@@ -28,7 +28,7 @@ struct Bound {
 
 Bound bound_of(const SphereTree& tree, SpherePolicy policy, int level, std::uint32_t parent,
                int slot) {
-  const TreeParts& parts = tree.parts();
+  const TreeParts& parts = parts_of(tree);
   if (policy == SpherePolicy::kSlab) {
     return {parts.saved_ball(level, parent, slot), parts.saved_slab(level, parent, slot)};
   }
@@ -50,7 +50,7 @@ Bound bound_of(const SphereTree& tree, SpherePolicy policy, int level, std::uint
 // The level of the nodes that a side of a step reads.
 int level_of(const SphereTree& tree, const SearchSide& side) {
   int level = tree.depth() + 1;
-  while (level > 1 && tree.parts().octree.nodes(level).data() != side.nodes) --level;
+  while (level > 1 && parts_of(tree).octree.nodes(level).data() != side.nodes) --level;
   return level;
 }
 
@@ -62,7 +62,7 @@ std::vector<Bound> bounds_of(const SphereTree& tree, SpherePolicy policy, const 
     return {bound_of(tree, policy, level - 1, node / 8, static_cast<int>(node % 8))};
   }
   std::vector<Bound> bounds;
-  for (int slot = 0; slot < tree.parts().octree.child_count(level, node); ++slot) {
+  for (int slot = 0; slot < parts_of(tree).octree.child_count(level, node); ++slot) {
     bounds.push_back(bound_of(tree, policy, level - 1, node, slot));
   }
   return bounds;

@@ -20,7 +20,7 @@ consteval std::array<std::size_t, 2 * sizeof...(Types)> layout_of() {
 consteval auto public_layout() {
   return layout_of<SphereTree, TriangleMesh, ReferenceQuery, Query, QueryOptions, ContactManifold,
                    Contact, ContactSums, ManifoldOptions, LeafPair, IntersectionResult, QueryResult,
-                   TrianglePairsResult, DistanceResult, Sharing, World, WorldOptions, WorldQuestion,
+                   TrianglePairsResult, DistanceResult, World, WorldOptions, WorldQuestion,
                    PairAnswer, WorldAnswer, WorldDistance>();
 }
 

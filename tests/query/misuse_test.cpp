@@ -6,10 +6,12 @@
 #include <memory>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "ist/base/pose.h"
 #include "ist/query/query.h"
 #include "ist/query/reference/reference_query.h"
+#include "ist/query/world/world.h"
 #include "query/query_cases.h"
 #include "support/errors.h"
 #include "support/shapes.h"
@@ -245,6 +247,46 @@ TEST(Query, OutlivesItsTrees) {
   ContactManifold again(moved, moved, query.policy());
   EXPECT_EQ(query.contacts(pose, again).status, QueryStatus::kDone);
   EXPECT_EQ(query.intersects(pose).answer, Answer::kYes);
+}
+
+// What is made of temporary trees shares their content after they are gone.
+TEST(Query, OfTemporariesGivesTheSameAnswers) {
+  const SphereTree tree = ball(0.25, true), other = ball(0.5, true);
+  const Eigen::Isometry3d pose = shift({3.5, 0.1, 0}), apart = shift({5, 0.1, 0});
+  const QueryOptions options{.front_pairs = 1 << 12};
+  const SpherePolicy policy = SpherePolicy::kTable;
+  Query lasting(tree, other, options), query(ball(0.25, true), ball(0.5, true), options);
+  EXPECT_TRUE(same(ask(query, pose), ask(lasting, pose)));
+  EXPECT_EQ(query.intersects(pose).answer, Answer::kYes);
+  const auto triangle_pairs = [&](Query& asked) {
+    std::vector<TrianglePair> pairs(1 << 12);
+    pairs.resize(asked.triangle_pairs(pose, pairs).triangle_pairs);
+    return pairs;
+  };
+  EXPECT_FALSE(triangle_pairs(query).empty());
+  EXPECT_EQ(triangle_pairs(query), triangle_pairs(lasting));
+  const DistanceInterval gap = query.distance(apart, 0).distance;
+  EXPECT_EQ(gap.lower, lasting.distance(apart, 0).distance.lower);
+  EXPECT_EQ(gap.upper, lasting.distance(apart, 0).distance.upper);
+  EXPECT_EQ(query.inside(apart).status, QueryStatus::kDone);
+
+  ReferenceQuery published(ball(0.25, true), ball(0.5, true), policy);
+  EXPECT_EQ(published.leaf_pairs(pose, {}).leaf_pairs,
+            ReferenceQuery(tree, other, policy).leaf_pairs(pose, {}).leaf_pairs);
+
+  ContactManifold manifold(SphereTree(tree), SphereTree(other), lasting.policy()),
+      alone(ball(0.25, true), ball(0.5, true), lasting.policy());
+  ASSERT_EQ(lasting.contacts(pose, manifold).status, QueryStatus::kDone);
+  EXPECT_GT(manifold.sums().weight, 0);
+  EXPECT_EQ(lasting.contacts(pose, alone).status, QueryStatus::kManifoldMismatch);
+
+  World world({.query = options});
+  world.add(ball(0.25, true));
+  world.add(ball(0.5, true), pose);
+  world.prepare();
+  const WorldAnswer answer = world.ask({.kind = WorldQuestion::kIntersects});
+  ASSERT_EQ(answer.pairs.size(), 1u);
+  EXPECT_EQ(answer.pairs[0].answer, Answer::kYes);
 }
 
 TEST(DistanceResult, SaysWhetherTheToleranceWasReached) {

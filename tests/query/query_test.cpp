@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "ist/base/error.h"
+#include "ist/query/workers/sharing.h"
 #include "ist/tree/sphere_tree.h"
 #include "query/scenes.h"
 #include "simd/targets.h"
@@ -35,7 +36,7 @@ TEST_P(QueryTest, SaysWhatItWasMadeOf) {
   for_each_policy(1, [](const Query& query) {
     EXPECT_EQ(query.target(), GetParam());
     EXPECT_EQ(query.workers(), 1);
-    EXPECT_EQ(query.sharing().chunks, 0u);
+    EXPECT_EQ(sharing_of(query).chunks, 0u);
   });
   for_each_policy(2, [](const Query& query) { EXPECT_EQ(query.workers(), 2); });
 }

@@ -3,9 +3,22 @@
 #include <chrono>
 #include <cstdint>
 
-#include "ist/query/results.h"
+#include "ist/query/budget_clock.h"
 
 namespace ist::test {
+
+/// Makes all budgets read another clock while it lives.
+class ScopedBudgetClock {
+ public:
+  explicit ScopedBudgetClock(detail::ReadClock clock) noexcept
+      : before_(detail::set_budget_clock(clock)) {}
+  ~ScopedBudgetClock() { detail::set_budget_clock(before_); }
+  ScopedBudgetClock(const ScopedBudgetClock&) = delete;
+  ScopedBudgetClock& operator=(const ScopedBudgetClock&) = delete;
+
+ private:
+  detail::ReadClock before_;
+};
 
 /// A clock that stands still and counts how often it is read.
 struct FakeClock {
@@ -21,11 +34,12 @@ struct LateClock {
   static Budget::Clock::time_point now() noexcept {
     return Budget::Clock::time_point(std::chrono::nanoseconds(looks++ < allowed ? 0 : 2));
   }
-  /// Returns a budget whose deadline has passed after `looks_allowed` looks.
+  /// Returns a budget whose deadline has passed after `looks_allowed` looks at this clock, if
+  /// budgets read it.
   static Budget budget_of(int looks_allowed) {
     looks = 0;
     allowed = looks_allowed;
-    return {.deadline = Budget::Clock::time_point(std::chrono::nanoseconds(1)), .now = now};
+    return {.deadline = Budget::Clock::time_point(std::chrono::nanoseconds(1))};
   }
   static inline int looks, allowed;
 };

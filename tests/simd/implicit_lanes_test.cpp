@@ -33,13 +33,13 @@ const SphereTree& tree_of_all_masks() {
       nodes = 0;
       for (const std::uint8_t mask : here) nodes += static_cast<unsigned>(std::popcount(mask));
     }
-    return SphereTree({Lattice{{0, 0, 0}, 0.3, 32, 5},
-                       LinearOctree(std::move(masks)),
-                       Orientation::kOutward,
-                       std::vector<PackedNormal>(nodes),
-                       {},
-                       std::nullopt,
-                       std::nullopt});
+    return tree_from({Lattice{{0, 0, 0}, 0.3, 32, 5},
+                      LinearOctree(std::move(masks)),
+                      Orientation::kOutward,
+                      std::vector<PackedNormal>(nodes),
+                      {},
+                      std::nullopt,
+                      std::nullopt});
   }();
   return tree;
 }
@@ -52,7 +52,7 @@ void for_each_parent(SpherePolicy policy, const Body& body) {
   const SearchPlan plan(tree, tree, policy);
   for (int level = tree.depth() - 1; level >= 0; --level) {
     const SearchStep& step = plan.steps()[static_cast<std::size_t>(tree.depth() - 1 - level)];
-    const std::uint32_t children = tree.parts().octree.node_count(level);
+    const std::uint32_t children = parts_of(tree).octree.node_count(level);
     std::uint32_t child = 0;
     for (std::uint32_t parent = 0; child < children; ++parent) {
       body(step, level, parent, child);
@@ -62,7 +62,7 @@ void for_each_parent(SpherePolicy policy, const Body& body) {
 }
 
 TEST(ImplicitLanes, AreTheNestedBallsRoundedUp) {
-  const TreeParts& parts = tree_of_all_masks().parts();
+  const TreeParts& parts = parts_of(tree_of_all_masks());
   for (const SpherePolicy policy : {SpherePolicy::kSimple, SpherePolicy::kTable}) {
     const auto lanes = std::make_unique<MovingLanes>();
     int codes_of = -1;

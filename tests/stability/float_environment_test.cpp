@@ -5,8 +5,10 @@
 
 #include "ist/base/pose.h"
 #include "ist/mesh/mesh.h"
+#include "ist/query/inside.h"
 #include "ist/query/query.h"
 #include "ist/query/reference/reference_query.h"
+#include "ist/query/workers/sharing.h"
 #include "ist/tree/bound_builder.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/sphere_tree.h"
@@ -191,6 +193,12 @@ TEST_P(FloatEnvironmentOfAQuery, ChangesNoInsideTest) {
   });
 }
 
+TEST_P(FloatEnvironmentOfAQuery, ChangesNoInside) {
+  changes_no_answer("Query::inside", 3, [](Query& query, const auto& pose, Record& record) {
+    record.add(query.inside(pose).inside);
+  });
+}
+
 TEST_P(FloatEnvironmentOfAQuery, ChangesNoContact) {
   changes_no_answer("Query::contacts", 1000, [&](Query& query, const auto& pose, Record& record) {
     ContactManifold manifold(fixed_, moving_, query.policy(), {.margin = 2});
@@ -219,8 +227,8 @@ TEST(FloatEnvironmentOfTheSecondWorker, IsNotTheCallers) {
                           kFlushToZero | kDenormalsAreZero);  // and the worker comes in it
       query.emplace(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab, "", 2));
     }
-    const std::uint64_t enough = query->sharing().chunks + 4;
-    while (query->sharing().chunks < enough) {
+    const std::uint64_t enough = sharing_of(*query).chunks + 4;
+    while (sharing_of(*query).chunks < enough) {
       {
         HostArithmetic host(rounding, kFlushToZero | kDenormalsAreZero);
         answer.result = query->leaf_pairs(scene.pose, answer.leaf_pairs);

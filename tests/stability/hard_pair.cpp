@@ -30,9 +30,9 @@ ShapeCases::ShapeCases(const std::string& shape)
 
 void check_voxels(const SphereTree& tree, StabilityCase& voxels) {
   constexpr int kParts = 16;  // of a pad, to which it is measured
-  const Lattice& lattice = tree.parts().lattice;
-  const std::vector<std::uint64_t> codes = tree.parts().octree.codes(0);
-  const LeafTriangles& kept = *tree.parts().triangles;
+  const Lattice& lattice = parts_of(tree).lattice;
+  const std::vector<std::uint64_t> codes = parts_of(tree).octree.codes(0);
+  const LeafTriangles& kept = *parts_of(tree).triangles;
   const TriangleMesh& mesh = kept.mesh;
   const TriangleLists& lists = kept.lists;
   std::vector<std::vector<std::uint64_t>> found(mesh.triangles.size());
@@ -90,8 +90,8 @@ HardPair::HardPair(const TriangleMesh& fixed, double fixed_voxel, const Triangle
 bool HardPair::check(const Eigen::Isometry3d& pose, ShapeCases& cases) {
   const ExactPair exact(exact_fixed_, exact_moving_, pose);
   const std::vector<TrianglePair> meeting = meeting_pairs(fixed_, moving_, pose);
-  const double distance = meeting.empty() ? mesh_distance(fixed_.parts().triangles->mesh,
-                                                          moving_.parts().triangles->mesh, pose)
+  const double distance = meeting.empty() ? mesh_distance(parts_of(fixed_).triangles->mesh,
+                                                          parts_of(moving_).triangles->mesh, pose)
                                           : 0;
   std::vector<TrianglePair> pairs(meeting.size() + 1);
   for (const auto& asked : asked_) {

@@ -20,7 +20,7 @@ Eigen::Vector3d cube_centre(const LinearOctree& octree, std::uint32_t leaf) {
 
 Bounds bounds_of(const SphereTree& tree, SpherePolicy policy, std::uint32_t leaf) {
   if (!is_implicit(policy)) return read_bounds(tree, policy, leaf);
-  return {tree.parts().ball(policy, 0, leaf, cube_centre(tree.parts().octree, leaf)), {}};
+  return {parts_of(tree).ball(policy, 0, leaf, cube_centre(parts_of(tree).octree, leaf)), {}};
 }
 
 }  // namespace

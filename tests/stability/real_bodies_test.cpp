@@ -81,7 +81,8 @@ void check_answers(const SphereTree& fixed, const SphereTree& moving,
 // meet, against what all pairs of triangles give.
 void check_distance(const SphereTree& body, const SphereTree& ball, double reach, Random& random,
                     StabilityCase& gap, StabilityCase& answers) {
-  const TriangleMesh &mesh = body.parts().triangles->mesh, &other = ball.parts().triangles->mesh;
+  const TriangleMesh &mesh = parts_of(body).triangles->mesh,
+                     &other = parts_of(ball).triangles->mesh;
   const double size = body.voxel_size();
   const double longest = std::max(longest_edge(mesh), longest_edge(other));
   std::vector<std::unique_ptr<Query>> queries;

@@ -81,7 +81,8 @@ TEST(ShapeLimits, HoldWithManyTrianglesInOnePlace) {
   EXPECT_EQ(error_name([&] { static_cast<void>(exact_tree_of(mesh, 1e-4, nullptr, 1 << 22)); }),
             "memory-limit");
   const SphereTree once = exact_tree_of(coincident(1), 1.9);
-  answers.sample(tree.parts().octree.codes(0) == once.parts().octree.codes(0) ? 0 : 1, 0, "voxels");
+  answers.sample(parts_of(tree).octree.codes(0) == parts_of(once).octree.codes(0) ? 0 : 1, 0,
+                 "voxels");
 
   const SphereTree other =
       exact_tree_of(triangle({0, 0, -0.5}, {0.3, 0.1, 0.9}, {-0.2, 0.2, 0.7}), 0.5);

@@ -139,8 +139,8 @@ INSTANTIATE_TEST_SUITE_P(Hard, Shapes, ::testing::ValuesIn(kShapes), [](const au
 Eigen::Isometry3d vertices_together(const SphereTree& fixed, const SphereTree& moving,
                                     const Eigen::Matrix3d& rotation, const Vector3d& by,
                                     Random& random) {
-  const auto& a = fixed.parts().triangles->mesh.vertices;
-  const auto& b = moving.parts().triangles->mesh.vertices;
+  const auto& a = parts_of(fixed).triangles->mesh.vertices;
+  const auto& b = parts_of(moving).triangles->mesh.vertices;
   const Vector3d on_a = a[random.below(a.size())], on_b = b[random.below(b.size())];
   return pose_of(rotation, (on_a - rotation * on_b) + by);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "ist/query/workers/sharing.h"
 #include "stability/all_engines.h"
 #include "support/effort.h"
 #include "support/exact_query.h"
@@ -205,7 +206,7 @@ TEST_P(Tangency, IsDecidedAmidManyOthers) {
         keeps_guarantee(bodies.at(way.at(last)), GetParam(), answer.leaf_pairs, answer.result.pad);
     cases.wrong.sample(kept ? 0 : 1, 0, kept.message());
   }
-  EXPECT_GT(engines.shared().sharing().worth, 0u);
+  EXPECT_GT(sharing_of(engines.shared()).worth, 0u);
 }
 
 }  // namespace

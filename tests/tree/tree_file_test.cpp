@@ -35,29 +35,30 @@ void expect_equal(const LinearOctree& a, const LinearOctree& b) {
 }
 
 void expect_equal(const SphereTree& a, const SphereTree& b) {
-  EXPECT_EQ(a.parts().lattice, b.parts().lattice);
+  EXPECT_EQ(parts_of(a).lattice, parts_of(b).lattice);
   EXPECT_EQ(a.orientation(), b.orientation());
   EXPECT_EQ(a.bounding_radius(), b.bounding_radius());
   EXPECT_EQ(a.source(), b.source());
-  expect_equal(a.parts().octree, b.parts().octree);
-  expect_same_bytes(std::span(a.parts().normals), std::span(b.parts().normals));
+  expect_equal(parts_of(a).octree, parts_of(b).octree);
+  expect_same_bytes(std::span(parts_of(a).normals), std::span(parts_of(b).normals));
   ASSERT_EQ(a.tightest(), b.tightest());
   for (int level = 0; level <= a.depth(); ++level) {
     if (a.has(SpherePolicy::kTight))
-      expect_same_bytes(a.parts().balls(level), b.parts().balls(level));
+      expect_same_bytes(parts_of(a).balls(level), parts_of(b).balls(level));
     if (a.has(SpherePolicy::kSlab))
-      expect_same_bytes(a.parts().slabs(level), b.parts().slabs(level));
+      expect_same_bytes(parts_of(a).slabs(level), parts_of(b).slabs(level));
   }
   EXPECT_EQ(a.largest_leaf_radius(a.tightest()), b.largest_leaf_radius(b.tightest()));
   ASSERT_EQ(a.triangles() != nullptr, b.triangles() != nullptr);
   if (a.triangles()) {
-    EXPECT_EQ(a.parts().triangles->mesh.vertices, b.parts().triangles->mesh.vertices);
-    EXPECT_EQ(a.parts().triangles->mesh.triangles, b.parts().triangles->mesh.triangles);
-    EXPECT_EQ(a.parts().triangles->lists.first, b.parts().triangles->lists.first);
-    EXPECT_EQ(a.parts().triangles->lists.ids, b.parts().triangles->lists.ids);
+    EXPECT_EQ(parts_of(a).triangles->mesh.vertices, parts_of(b).triangles->mesh.vertices);
+    EXPECT_EQ(parts_of(a).triangles->mesh.triangles, parts_of(b).triangles->mesh.triangles);
+    EXPECT_EQ(parts_of(a).triangles->lists.first, parts_of(b).triangles->lists.first);
+    EXPECT_EQ(parts_of(a).triangles->lists.ids, parts_of(b).triangles->lists.ids);
   }
   ASSERT_EQ(a.has_proximity(), b.has_proximity());
-  if (a.parts().proximity) expect_equal(a.parts().proximity->octree, b.parts().proximity->octree);
+  if (parts_of(a).proximity)
+    expect_equal(parts_of(a).proximity->octree, parts_of(b).proximity->octree);
 }
 
 SphereTree tree_of(const TriangleMesh& mesh, double voxel_size, unsigned sections) {

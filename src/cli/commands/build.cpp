@@ -82,7 +82,7 @@ void run(BuildArguments options) {
   print_warnings(checked.warnings);
   const std::uint64_t bytes = write_tree(tree, options.output);
 
-  const LinearOctree& octree = tree.parts().octree;
+  const LinearOctree& octree = parts_of(tree).octree;
   if (options.json) {
     print_header("build", {{"mesh", options.mesh}});
     nlohmann::ordered_json line{{"file", options.output.filename().string()},
@@ -97,8 +97,8 @@ void run(BuildArguments options) {
                                 {"unit", json_of(tree.source().unit)},
                                 {"frame", json_of(tree.frame())},
                                 {"source", json_of(tree.source())}};
-    if (tree.parts().proximity)
-      line["proximity_voxels"] = tree.parts().proximity->octree.leaf_count();
+    if (parts_of(tree).proximity)
+      line["proximity_voxels"] = parts_of(tree).proximity->octree.leaf_count();
     for (const auto& stage : report.stages) line["milliseconds"][stage.name] = stage.milliseconds;
     line["warnings"] = nlohmann::ordered_json::array();
     for (std::string warning :
@@ -114,8 +114,8 @@ void run(BuildArguments options) {
   fmt::print("{}: {} voxels, {} nodes, depth {}, {:.1f} MB\n", options.output.string(),
              octree.leaf_count(), octree.node_count(), octree.depth(),
              static_cast<double>(bytes) / 1e6);
-  if (tree.parts().proximity) {
-    fmt::print("proximity voxels: {}\n", tree.parts().proximity->octree.leaf_count());
+  if (parts_of(tree).proximity) {
+    fmt::print("proximity voxels: {}\n", parts_of(tree).proximity->octree.leaf_count());
   }
   for (const auto& stage : report.stages) {
     fmt::print("  {:<18} {:8.1f} ms\n", stage.name, stage.milliseconds);

@@ -89,7 +89,7 @@ void run(const ExportArguments& options) {
   refuse_if(options.level > tree.depth(), "--level",
             fmt::format("the tree has levels 0 to {}", tree.depth()));
   (options.what == "voxels" ? write_voxels : write_spheres)(tree, format, options);
-  const std::uint32_t count = tree.parts().octree.node_count(options.level);
+  const std::uint32_t count = parts_of(tree).octree.node_count(options.level);
   if (options.json) {
     print_header("export", {{"tree", options.tree}});
     const nlohmann::ordered_json line{{"file", options.output.filename().string()},

@@ -106,7 +106,7 @@ void print_tree(const std::filesystem::path& file, const SphereTree& tree,
                 const std::optional<MeshReport>& triangles,
                 const std::vector<LevelStatistics>& levels) {
   fmt::print("{}: a tree of {} voxels of edge {}, {} nodes, {:.1f} MB in memory\n", file.string(),
-             tree.leaf_count(), tree.voxel_size(), tree.parts().octree.node_count(),
+             tree.leaf_count(), tree.voxel_size(), parts_of(tree).octree.node_count(),
              static_cast<double>(tree.bytes()) / 1e6);
   print_source(tree.source());
   print_extent(box_of(tree), tree.source().unit);
@@ -115,7 +115,7 @@ void print_tree(const std::filesystem::path& file, const SphereTree& tree,
   fmt::print("orientation {}, {} triangles kept, {} proximity voxels\n\n",
              tree.orientation() == Orientation::kOutward ? "outward" : "assumed",
              triangles ? triangles->triangles : 0,
-             tree.parts().proximity ? tree.parts().proximity->octree.leaf_count() : 0);
+             parts_of(tree).proximity ? parts_of(tree).proximity->octree.leaf_count() : 0);
   print_levels(tree, levels);
 }
 

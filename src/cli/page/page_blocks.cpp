@@ -34,9 +34,9 @@ ordered_json body_block(const char* role, const std::string& name, const SphereT
 }
 
 SphereTree without_name(const SphereTree& tree) {
-  TreeParts parts = tree.parts();
+  TreeParts parts = parts_of(tree);
   parts.source.name.clear();
-  return SphereTree(std::move(parts));
+  return tree_from(std::move(parts));
 }
 
 ordered_json body_alone_block(const NamedTree& body) {

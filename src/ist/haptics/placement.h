@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "ist/base/api.h"
+#include "ist/base/pose.h"
 
 namespace ist {
 

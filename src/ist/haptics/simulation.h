@@ -15,6 +15,7 @@
 namespace ist {
 
 namespace detail {
+struct Access;
 struct SimulationParts;
 struct SimulationState;
 }  // namespace detail
@@ -105,9 +106,6 @@ struct EffectTime {
 /// µs. A simulation is used by one thread at a time.
 class IST_API Simulation {
  public:
-  /// Makes a simulation of its parts, for the library's own code: build_scene() is the way of
-  /// users.
-  explicit Simulation(detail::SimulationParts parts);
   ~Simulation();
   Simulation(Simulation&&) noexcept;  ///< the other may then only be assigned or destroyed
   Simulation& operator=(Simulation&&) noexcept;  ///< as the constructor
@@ -154,6 +152,9 @@ class IST_API Simulation {
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
+  friend struct detail::Access;
+  explicit Simulation(detail::SimulationParts parts);
+
   std::unique_ptr<detail::SimulationState> state_;
 };
 

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
+#include "ist/base/access.h"
 #include "ist/haptics/bodies/hand_bodies.h"
 #include "ist/haptics/bodies/pair_queries.h"
 #include "ist/haptics/effects/effect.h"
@@ -31,6 +33,11 @@ struct SimulationParts {
   Placement start = {};  ///< of the tool
   double dt;             ///< length of a tick, s
 };
+
+/// Makes a simulation of its parts.
+[[nodiscard]] inline Simulation simulation_from(SimulationParts parts) {
+  return Access::made_of<Simulation>(std::move(parts));
+}
 
 /// Gives `parts` a fixed and a held body at home, and the query between them.
 /// @param radius bound on the distance of the held surface from the tool's origin, m

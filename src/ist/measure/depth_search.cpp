@@ -57,7 +57,7 @@ void DepthSearch::begin_at(std::size_t side, std::uint32_t triangle, const Vecto
 bool DepthSearch::run(double tolerance) {
   tolerance_ = std::max(tolerance, 4 * rounding_);
   for (std::uint32_t side = 0; side < sides_.size(); ++side) {
-    const TriangleClusters& clusters = sides_[side].surface.parts().triangles->clusters;
+    const TriangleClusters& clusters = parts_of(sides_[side].surface).triangles->clusters;
     add_node(side, clusters.root_level(), 0, nullptr);
   }
   const double first_bound = bound();
@@ -109,7 +109,7 @@ void DepthSearch::open(const Item& item) {
     }
     return;
   }
-  const TriangleClusters& clusters = sides_[item.side].surface.parts().triangles->clusters;
+  const TriangleClusters& clusters = parts_of(sides_[item.side].surface).triangles->clusters;
   const std::uint32_t count = clusters.child_count(item.level - 1, item.index);
   for (std::uint32_t k = 0; k < count; ++k) {
     if (item.level > 0) {
@@ -133,7 +133,7 @@ DepthSearch::Measured DepthSearch::measure(std::uint32_t side, const Vector& at,
   ++points_;
   const SurfaceInBody& of = sides_[side];
   const NearestTriangle nearest = *of.search.nearest(at, HUGE_VAL, hint);
-  const Side side_there = of.body.parts().triangles->side_of(at, nearest);
+  const Side side_there = parts_of(of.body).triangles->side_of(at, nearest);
   const double distance = std::sqrt(nearest.square);
   return {side_there == Side::kOutside ? -distance : distance, side_there != Side::kUnknown,
           nearest};
@@ -163,14 +163,14 @@ double DepthSearch::distance_to(std::uint32_t side, std::uint32_t triangle, cons
 // Returns how deep a point lies in the box round the body; negative outside the box. It lies no
 // deeper in the body.
 double DepthSearch::depth_in_box(std::uint32_t side, const Vector& at) const {
-  const Eigen::AlignedBox3d& box = sides_[side].body.parts().triangles->box();
+  const Eigen::AlignedBox3d& box = parts_of(sides_[side].body).triangles->box();
   const Vector above = difference(at, box.min()), below = difference(box.max(), at);
   return std::min({above[0], above[1], above[2], below[0], below[1], below[2]});
 }
 
 // Returns the most of any point of a piece: below each face of the box, a corner is the deepest.
 double DepthSearch::depth_in_box(std::uint32_t side, const Corners& corners) const {
-  const Eigen::AlignedBox3d& box = sides_[side].body.parts().triangles->box();
+  const Eigen::AlignedBox3d& box = parts_of(sides_[side].body).triangles->box();
   double least = HUGE_VAL;
   for (Eigen::Index i = 0; i < 3; ++i) {
     const double a = corners[0][i], b = corners[1][i], c = corners[2][i];
@@ -197,7 +197,7 @@ bool DepthSearch::drops_below(const Middle& parent, std::uint32_t side, const Ve
 void DepthSearch::add_node(std::uint32_t side, int level, std::uint32_t index,
                            const Middle* parent) {
   const SphereTree& surface = sides_[side].surface;
-  const TriangleClusters& clusters = surface.parts().triangles->clusters;
+  const TriangleClusters& clusters = parts_of(surface).triangles->clusters;
   const NodeBlock& block = clusters.bounds(level)[index / kClusterWidth];
   const std::size_t lane = index % kClusterWidth;
   Vector centre = surface.origin();

@@ -36,7 +36,7 @@ std::vector<SurfaceDistance> distances_of(const SphereTree& tree, const PointSea
                                           std::span<const Vector> points, double reach,
                                           const Proceed& proceed) {
   std::vector<SurfaceDistance> out(points.size());
-  const LeafTriangles& body = *tree.parts().triangles;
+  const LeafTriangles& body = *parts_of(tree).triangles;
   static_cast<void>(body.sides());  // made here, so that its loops have all threads
   for (std::size_t done = 0; done < points.size(); done += kAtOnce) {
     if (proceed && !proceed(static_cast<double>(done) / static_cast<double>(points.size()))) {

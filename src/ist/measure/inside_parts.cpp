@@ -6,8 +6,8 @@
 namespace ist {
 
 bool is_any_inside(const SurfaceInBody& side) {
-  const LeafTriangles& body = *side.body.parts().triangles;
-  const auto& points = side.surface.parts().triangles->component_points();
+  const LeafTriangles& body = *parts_of(side.body).triangles;
+  const auto& points = parts_of(side.surface).triangles->component_points();
   return std::any_of(points.begin(), points.end(), [&](const Eigen::Vector3d& point) {
     const Eigen::Vector3d at = side.to_body(point);
     if (body.sides().is_beyond(at)) return false;

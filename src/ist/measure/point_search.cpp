@@ -183,7 +183,7 @@ class PointSearch::Descent {
 
 PointSearch::PointSearch(const SphereTree& tree, const ClusterKernels& kernels) noexcept
     : mesh_(*tree.triangles()),
-      clusters_(tree.parts().triangles->clusters),
+      clusters_(parts_of(tree).triangles->clusters),
       kernels_(kernels),
       origin_(tree.origin()),
       size_(tree.bounding_radius() + tree.origin().cwiseAbs().maxCoeff()) {}

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ist/base/api.h"
+#include "ist/base/pose.h"
 #include "ist/base/progress.h"
 #include "ist/tree/sphere_tree.h"
 

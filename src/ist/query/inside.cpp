@@ -1,7 +1,9 @@
+#include "ist/query/inside.h"
+
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "ist/base/float_environment.h"
@@ -9,9 +11,65 @@
 #include "ist/mesh/clusters/triangle_clusters.h"
 #include "ist/mesh/components.h"
 #include "ist/mesh/winding_number.h"
-#include "ist/query/query.h"
+#include "ist/query/query_state.h"
+#include "ist/tree/tree_parts.h"
 
 namespace ist {
+namespace {
+
+// A body, and a point of each of its components.
+struct Solid {
+  const TriangleMesh& mesh;
+  const TriangleClusters* clusters;  // null without triangles
+  const Eigen::AlignedBox3d& box;
+  std::span<const Eigen::Vector3d> points;
+};
+
+bool holds(const Solid& outer, const Solid& inner, const RigidMove& to_outer) noexcept {
+  const auto inside = [&](const Eigen::Vector3d& point) {
+    const Eigen::Vector3d there = to_outer(point);
+    return outer.box.contains(there) &&
+           WindingNumber(outer.mesh, *outer.clusters).at(there).value_or(0) != 0;
+  };
+  return !inner.points.empty() && std::all_of(inner.points.begin(), inner.points.end(), inside);
+}
+
+// Returns the one of two bodies that lies inside the other. Their surfaces do not intersect.
+Inside inside_of(const Solid& fixed, const Solid& moving, const Eigen::Isometry3d& pose) noexcept {
+  if (holds(fixed, moving, RigidMove(pose))) return Inside::kMoving;
+  return holds(moving, fixed, RigidMove(inverse_of(pose))) ? Inside::kFixed : Inside::kNone;
+}
+
+Solid solid_of(const LeafTriangles& of) {
+  return {of.mesh, &of.clusters, of.box(), of.component_points()};
+}
+
+}  // namespace
+
+const char* to_string(Inside inside) noexcept {
+  constexpr std::array kNames = {"none", "fixed", "moving"};
+  const auto at = static_cast<std::size_t>(inside);
+  return at < kNames.size() ? kNames[at] : "unknown";
+}
+
+InsideResult Query::inside(const Eigen::Isometry3d& pose) {
+  const ScopedFloatEnvironment environment;
+  detail::QueryState& s = *state_;
+  const detail::Use use(s);
+  if (!use) return {.status = QueryStatus::kBusy};
+  if (!s.exact) return {.status = QueryStatus::kNoTriangles};
+  const std::optional<detail::Approach> bodies = s.approach(pose, s.triangle_error(pose));
+  const double off = rotation_error(pose);
+  if (!bodies) return {.status = QueryStatus::kInvalidPose, .rotation_error = off};
+  InsideResult result{.rotation_error = off};
+  if (!bodies->roots.overlap) return result;
+  const Eigen::Isometry3d rigid = *project_to_rigid(pose);
+  if (s.exact->any({rigid, bodies->relative}, {}).found) return result;
+  result.inside = inside_of(solid_of(*parts_of(s.fixed).triangles),
+                            solid_of(*parts_of(s.moving).triangles), rigid);
+  return result;
+}
+
 namespace detail {
 
 struct InsideState {
@@ -26,13 +84,8 @@ struct InsideState {
         box.extend(component.box);
       }
     }
-    // Whether all components of the other body lie inside this one.
-    [[nodiscard]] bool holds(const Body& inner, const RigidMove& to_this) const noexcept {
-      const auto inside = [&](const Eigen::Vector3d& point) {
-        const Eigen::Vector3d there = to_this(point);
-        return box.contains(there) && WindingNumber(mesh, *clusters).at(there).value_or(0) != 0;
-      };
-      return !inner.points.empty() && std::all_of(inner.points.begin(), inner.points.end(), inside);
+    [[nodiscard]] Solid solid() const noexcept {
+      return {mesh, clusters ? &*clusters : nullptr, box, points};
     }
 
     const TriangleMesh& mesh;
@@ -46,12 +99,6 @@ struct InsideState {
 
 }  // namespace detail
 
-const char* to_string(Inside inside) noexcept {
-  constexpr std::array kNames = {"none", "fixed", "moving"};
-  const auto at = static_cast<std::size_t>(inside);
-  return at < kNames.size() ? kNames[at] : "unknown";
-}
-
 InsideTest::InsideTest(const TriangleMesh& fixed, const TriangleMesh& moving) {
   const ScopedFloatEnvironment environment;
   state_.reset(
@@ -63,9 +110,7 @@ InsideTest& InsideTest::operator=(InsideTest&&) noexcept = default;
 
 Inside InsideTest::at(const Eigen::Isometry3d& pose) const noexcept {
   const ScopedFloatEnvironment environment;
-  if (state_->fixed.holds(state_->moving, RigidMove(pose))) return Inside::kMoving;
-  return state_->moving.holds(state_->fixed, RigidMove(inverse_of(pose))) ? Inside::kFixed
-                                                                          : Inside::kNone;
+  return inside_of(state_->fixed.solid(), state_->moving.solid(), pose);
 }
 
 }  // namespace ist

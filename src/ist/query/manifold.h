@@ -12,8 +12,9 @@
 namespace ist {
 
 namespace detail {
+struct Access;
 class ContactReducer;
-}
+}  // namespace detail
 
 /// A place where a hand feels the other body, in fixed mesh coordinates: the mean, by weight, of
 /// the leaf pairs of one fixed leaf, or of a few leaves together. Lengths are in mesh units.
@@ -105,12 +106,6 @@ class IST_API ContactManifold {
   /// Throws kPolicyMissing; kArgumentInvalid for an option out of range; std::bad_alloc.
   ContactManifold(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                   const ManifoldOptions& options = {});
-  ContactManifold(const SphereTree&&, const SphereTree&, SpherePolicy,
-                  const ManifoldOptions& = {}) = delete;
-  ContactManifold(const SphereTree&, const SphereTree&&, SpherePolicy,
-                  const ManifoldOptions& = {}) = delete;
-  ContactManifold(const SphereTree&&, const SphereTree&&, SpherePolicy,
-                  const ManifoldOptions& = {}) = delete;
   ~ContactManifold();
   /// The other may then only be assigned or destroyed.
   ContactManifold(ContactManifold&&) noexcept;
@@ -133,11 +128,9 @@ class IST_API ContactManifold {
   /// Bytes reserved.
   [[nodiscard]] std::size_t bytes() const noexcept;
 
-  /// Returns the reducer that fills the manifold. For the library's own code: no installed header
-  /// defines it.
-  [[nodiscard]] detail::ContactReducer& reducer() noexcept { return *reducer_; }
-
  private:
+  friend struct detail::Access;
+
   std::unique_ptr<detail::ContactReducer> reducer_;
 };
 

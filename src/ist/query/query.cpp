@@ -2,17 +2,23 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 
+#include "ist/base/access.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/pose.h"
+#include "ist/query/budget_clock.h"
 #include "ist/query/contacts/contact_reducer.h"
 #include "ist/query/query_state.h"
+#include "ist/query/workers/sharing.h"
 
 namespace ist {
 namespace {
 
 // Batch size, in fixed nodes, of a search that ends at its first leaf pair.
 constexpr std::size_t kFewGroups = 16;
+
+std::atomic<detail::ReadClock> budget_clock{&Budget::Clock::now};
 
 // Ends at the first leaf pair.
 class AnyLeafPair : public MeteredVisitor {
@@ -37,6 +43,13 @@ class AnyLeafPair : public MeteredVisitor {
 };
 
 }  // namespace
+
+Budget::Clock::time_point detail::budget_now() noexcept {
+  return budget_clock.load(std::memory_order_relaxed)();
+}
+detail::ReadClock detail::set_budget_clock(ReadClock clock) noexcept {
+  return budget_clock.exchange(clock, std::memory_order_relaxed);
+}
 
 const char* to_string(Answer answer) noexcept {
   constexpr std::array kNames = {"unknown", "no", "near", "yes"};
@@ -119,7 +132,7 @@ QueryResult Query::contacts(const Eigen::Isometry3d& pose, ContactManifold& mani
   detail::QueryState& s = *state_;
   const detail::Use use(s);
   if (!use) return {.status = QueryStatus::kBusy, .complete = false};
-  detail::ContactReducer& reducer = manifold.reducer();
+  detail::ContactReducer& reducer = detail::reducer_of(manifold);
   reducer.clear();
   if (!reducer.fits(s.fixed, s.moving, s.policy)) {
     return {.status = QueryStatus::kManifoldMismatch, .complete = false};
@@ -186,10 +199,11 @@ int Query::workers() const noexcept {
   return std::holds_alternative<SharedSearch>(state_->searches) ? 2 : 1;
 }
 
-Sharing Query::sharing() const noexcept {
-  const auto* shared = std::get_if<SharedSearch>(&state_->searches);
+Sharing sharing_of(const Query& query) noexcept {
+  const detail::QueryState& s = detail::Access::state(query);
+  const auto* shared = std::get_if<SharedSearch>(&s.searches);
   Sharing sum = shared != nullptr ? shared->sharing() : Sharing{};
-  if (state_->exact) sum += state_->exact->sharing();
+  if (s.exact) sum += s.exact->sharing();
   return sum;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ist/base/api.h"
+#include "ist/base/pose.h"
 #include "ist/mesh/mesh.h"
 #include "ist/query/manifold.h"
 #include "ist/query/results.h"
@@ -19,8 +20,8 @@
 namespace ist {
 
 namespace detail {
+struct Access;
 struct QueryState;
-struct InsideState;
 }  // namespace detail
 
 /// The options of a Query: its bounds, its speed and its memory.
@@ -30,71 +31,74 @@ struct QueryOptions {
   /// The instruction set: `avx3`, `avx2`, `sse4`, `ssse3` or `scalar`; by default the environment's
   /// IST_TARGET, or the best one. The answer does not depend on it.
   std::string target = {};
-  /// The most pairs of nodes of one level in memory, 12 bytes each, a level and worker. The answer
-  /// does not depend on it. With the default a level stays in a core's own cache; a quarter of it
-  /// costs a tenth of the time more where jaws are closed, four times as many gain nothing.
+  /// The most pairs of nodes in memory for each level and worker, 12 bytes each. The answer does
+  /// not depend on it. With the default, a level stays in a core's own cache. A quarter of it takes
+  /// a tenth more time for closed jaws; four times as many gain nothing.
   std::size_t frontier_pairs = 1 << 16;
-  /// 1: the calling thread does all work. 2: a resident thread helps where it can.
+  /// 1: the calling thread does all work. 2: a resident thread helps if it can.
   int workers = 1;
-  /// With two workers: the time from the beginning of one query to the beginning of the next; 0
-  /// where queries follow each other at once.
+  /// With two workers: the time from the beginning of one query to the beginning of the next; 0 if
+  /// queries follow each other at once.
   std::chrono::nanoseconds period = std::chrono::milliseconds(1);
   /// The most leaf pairs to keep from one pose to the next, 224 bytes each, and the memory of one
-  /// more search; 0: none, and every query is a search of its own. They may be of half as many
-  /// different fixed leaves; three times the leaf pairs that overlap is room enough. For a body
-  /// that moves by less than some 0.1 voxel from query to query: leaf_pairs() and contacts() then
-  /// keep the pairs that are nearly near enough, test them again, and search only where the motion
-  /// has used that up. Where they do not fit, they search. The answers are the same, bit by bit,
-  /// but for `sphere_tests`, `distance` and `found`. A budget of tests makes every query a search
-  /// of its own. A query that a stream or a deadline ended makes nothing for the next one.
+  /// more search. 0: none are kept, and every query searches. The pairs may be of half as many
+  /// different fixed leaves. Three times the leaf pairs that overlap is room enough.
+  ///
+  /// For a body that moves by less than some 0.1 voxel from query to query: leaf_pairs() and
+  /// contacts() then keep the pairs that are nearly near enough, and test them again. They search
+  /// only after the motion has used this up, or if the pairs do not fit. The answers are the same,
+  /// bit by bit, but for `sphere_tests`, `distance` and `found`. With a budget of tests every query
+  /// searches. A query that a stream or a deadline ended makes nothing for the next one.
   std::size_t front_pairs = 0;
 };
 
-/// Finds where two rigid bodies are near each other, intersect and push each other, and how far
-/// apart they are: traversals of two bounding volume hierarchies in vectors, of spheres breadth
-/// first, of clusters of triangles depth first.
+/// Asks two rigid bodies: are they near each other, do they intersect, how far apart are they, and
+/// how do they push each other? It descends two bounding volume hierarchies in vectors: spheres
+/// breadth first, clusters of triangles depth first.
 ///
-/// `pose` maps moving mesh coordinates to fixed mesh coordinates; a pose that is no rigid motion
-/// gives kInvalidPose. Lengths are in mesh units. For one pair of trees and one pose every answer
-/// is the same, bit by bit, on every instruction set, with one worker or two, and whatever the
-/// options for memory. Of what a query keeps from earlier questions only these depend: the numbers
-/// that `front_pairs` names, the ends of distance(), and `sphere_tests`. A budget of tests ignores
-/// it.
+/// `pose` maps moving mesh coordinates to fixed mesh coordinates. A pose that is no rigid motion
+/// gives kInvalidPose. Lengths are in mesh units.
+///
+/// For one pair of trees and one pose every answer is the same, bit by bit: on every instruction
+/// set, with one worker or two, and for all options of memory. A query keeps some of its earlier
+/// questions. Only `sphere_tests`, the ends of distance(), and the numbers that `front_pairs` names
+/// depend on them. A budget of tests ignores them.
 ///
 /// The constructor reserves all memory and makes the first call of the kernels. A verb allocates
-/// nothing, locks nothing and makes no system call. A query shares the content of both trees; a
-/// temporary tree does not compile. Any number of threads may share a tree; one query belongs to
-/// one thread at a time: a verb that finds another thread in the query gives kBusy.
+/// nothing, locks nothing and makes no system call; inside() may do so.
+///
+/// A query shares the content of both trees, so they may be temporaries. Any number of threads may
+/// share a tree. One query belongs to one thread at a time: a verb gives kBusy if another thread is
+/// in the query.
 class IST_API Query {
  public:
   /// Throws kPolicyMissing, kTargetMissing, kMemoryLimit; kArgumentInvalid for a number of workers
-  /// other than 1 or 2, and for trees in different frames of a patient; std::bad_alloc.
+  /// other than 1 or 2, and for trees in different frames of a patient or different units;
+  /// std::bad_alloc.
   Query(const SphereTree& fixed, const SphereTree& moving, const QueryOptions& options = {});
-  Query(const SphereTree&&, const SphereTree&, const QueryOptions& = {}) = delete;
-  Query(const SphereTree&, const SphereTree&&, const QueryOptions& = {}) = delete;
-  Query(const SphereTree&&, const SphereTree&&, const QueryOptions& = {}) = delete;
   ~Query();
   Query(Query&&) noexcept;             ///< the other may then only be assigned or destroyed
   Query& operator=(Query&&) noexcept;  ///< as the constructor
 
-  /// Tests whether the bodies intersect. Ends at the first certain answer: exact if both trees have
-  /// triangles, else kNo or kNear. The answer is kUnknown if the status is not kDone.
+  /// Tests whether the bodies intersect, and ends at the first certain answer. It is exact if both
+  /// trees have triangles, else kNo or kNear. It is kUnknown if the status is not kDone.
   ///
   /// @param pose   maps moving mesh coordinates to fixed mesh coordinates
   /// @param budget ends the search early: the answer is then kUnknown
   ///
-  /// Cost: 2 to 70 µs for jaws, 0.3 µs where the triangles that met last still meet.
+  /// Cost: 2 to 70 µs for jaws, 0.3 µs if the triangles that met last still meet.
   [[nodiscard]] IntersectionResult intersects(const Eigen::Isometry3d& pose,
                                               const Budget& budget = {}) noexcept;
 
   /// Finds all pairs of leaves whose bounds overlap.
   ///
   /// @param pose   maps moving mesh coordinates to fixed mesh coordinates
-  /// @param out    takes the pairs, sorted by fixed and then by moving leaf; where it is too short,
-  ///               the first of them. Elements behind the last pair may be overwritten
-  /// @param budget ends the search early: the result then holds the first pairs, of pairs that were
-  ///               kept none, and the distance as far as it is known. With a budget the distance is
-  ///               bounded in any case
+  /// @param out    takes the pairs, sorted by fixed and then by moving leaf; if it is too short,
+  /// the
+  ///               first of them. Elements behind the last pair may be overwritten
+  /// @param budget ends the search early: the result then holds the first pairs, but none of pairs
+  ///               that were kept, and the distance as far as it is known. With a budget the
+  ///               distance always has bounds
   ///
   /// Cost: 1 to 3 ns a test of two bounds, 20 to 40 ns a pair of nodes.
   [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out,
@@ -106,37 +110,38 @@ class IST_API Query {
   [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose,
                                        LeafPairStream& stream) noexcept;
 
-  /// Reduces all leaf pairs to contacts and to the sums that forces are made of. The distance is
-  /// that of the roots' bounds, and no more than the resolution where there are pairs; of a search
-  /// that a budget ended, no more than that of its pairs; inside a clearance that was kept, what is
-  /// left of it.
+  /// Reduces all leaf pairs to contacts, and to sums for forces. The distance is between the roots'
+  /// bounds. With pairs it is no more than the resolution. If a budget ended the search, it is no
+  /// more than the distance of its pairs. Inside a clearance that was kept, it is the rest of it.
   ///
   /// @param pose     maps moving mesh coordinates to fixed mesh coordinates
-  /// @param manifold made for the same trees and policy, else kManifoldMismatch; emptied where the
-  ///                 status is another than kDone
-  /// @param budget   ends the search early: then neither result nor manifold is complete, there are
-  ///                 no contacts, and no force should be made of the sums. Contacts are made after
-  ///                 the last look at the clock, in 15 ns a fixed leaf
+  /// @param manifold made for the same trees and policy, else kManifoldMismatch; emptied if the
+  ///                 status is not kDone
+  /// @param budget   ends the search early: then neither result nor manifold is complete, and there
+  ///                 are no contacts; make no force of the sums. Contacts are made after the last
+  ///                 look at the clock, in 15 ns a fixed leaf
   ///
-  /// Cost: that of leaf_pairs(), and 3 to 5 ns a leaf pair, with points 10 to 15; on the scalar
-  /// target 50.
+  /// Cost: as leaf_pairs(), and 3 to 5 ns a leaf pair, with points 10 to 15; on the scalar target
+  /// 50.
   [[nodiscard]] QueryResult contacts(const Eigen::Isometry3d& pose, ContactManifold& manifold,
                                      const Budget& budget = {}) noexcept;
 
-  /// Bounds the distance between the surfaces by an interval no wider than `tolerance`, or
-  /// `narrowest` where that is more. A tolerance that is NaN or negative counts as 0.
+  /// Bounds the distance between the surfaces by an interval no wider than the larger one of
+  /// `tolerance` and `narrowest`. A tolerance that is NaN or negative counts as 0.
   ///
   /// @param pose      maps moving mesh coordinates to fixed mesh coordinates
   /// @param tolerance mesh units
   /// @param budget    ends the search early: the interval is then wider
   ///
-  /// The interval holds the true distance in any case; `complete` says whether the tolerance was
-  /// reached. It is 0 where triangle_pairs() finds any. Bodies so far apart that float cannot tell
-  /// their parts from each other keep the interval of their roots. The search begins with the
-  /// triangles that were nearest last: so the ends may be others after other questions, unless the
-  /// tolerance is 0. docs/guarantees.md gives the rounding of each bound and how fast the distance
-  /// can change with the pose. Cost: 0.02 to 0.35 ms for two jaws that touch or are millimetres
-  /// apart, up to 60 ms where they are a kilometre apart; without triangles 0.1 to 0.7 ms.
+  /// The interval always holds the true distance; `complete` says whether the tolerance was
+  /// reached. It is 0 if triangle_pairs() finds any. Bodies may be so far apart that float cannot
+  /// tell their parts from each other: they keep the interval of their roots. The search begins
+  /// with the triangles that were nearest last. So earlier questions may change the ends, unless
+  /// the tolerance is 0. docs/guarantees.md gives the rounding of each bound, and how fast the
+  /// distance can change with the pose.
+  ///
+  /// Cost: 0.02 to 0.35 ms for two jaws that touch or are millimetres apart, up to 60 ms if they
+  /// are a kilometre apart; without triangles 0.1 to 0.7 ms.
   [[nodiscard]] DistanceResult distance(const Eigen::Isometry3d& pose, double tolerance,
                                         const Budget& budget = {}) noexcept;
 
@@ -144,10 +149,10 @@ class IST_API Query {
   [[nodiscard]] bool has_triangles() const noexcept;
 
   /// Finds all pairs of triangles that have a point in common, exactly. A moved vertex is rounded
-  /// to double first. kNoTriangles where has_triangles() is false.
+  /// to double first. kNoTriangles if has_triangles() is false.
   ///
   /// @param pose   maps moving mesh coordinates to fixed mesh coordinates
-  /// @param out    takes the pairs, sorted by fixed and then by moving triangle; where it is too
+  /// @param out    takes the pairs, sorted by fixed and then by moving triangle; if it is too
   ///               short, the first of them
   /// @param budget ends the search early: the result then holds the pairs found so far
   ///
@@ -157,9 +162,21 @@ class IST_API Query {
                                                    std::span<TrianglePair> out,
                                                    const Budget& budget = {}) noexcept;
 
-  /// Forgets what earlier questions left behind: the triangles that met or were nearest last, and
-  /// the pairs of a front. The next answers are those of a new query. Does nothing while another
-  /// thread is using the query.
+  /// Finds which body lies inside the other. A body lies inside if all its components do. A
+  /// component does if one of its points has a winding number other than 0, and no triangles of the
+  /// two bodies intersect. kNoTriangles if has_triangles() is false.
+  ///
+  /// @param pose maps moving mesh coordinates to fixed mesh coordinates
+  ///
+  /// An open body has no certain inside: SphereTree::orientation(). Cost: as intersects(), and some
+  /// 3 µs for each component in the bounding box of the other body. The first call for a tree,
+  /// or the first signed distance or depth, takes 1.2 µs a triangle and core. It can throw
+  /// std::bad_alloc.
+  [[nodiscard]] InsideResult inside(const Eigen::Isometry3d& pose);
+
+  /// Forgets the earlier questions: the triangles that met or were nearest last, and the pairs of a
+  /// front. The next answers are those of a new query. Does nothing while another thread is in the
+  /// query.
   void forget() noexcept;
 
   /// The fixed tree, which shares its content with the caller's.
@@ -175,43 +192,10 @@ class IST_API Query {
   /// Bytes reserved.
   [[nodiscard]] std::size_t bytes() const noexcept;
 
-  /// How often the second worker helped; all zero with one worker.
-  [[nodiscard]] Sharing sharing() const noexcept;
-
  private:
+  friend struct detail::Access;
+
   std::unique_ptr<detail::QueryState> state_;
-};
-
-/// The one of two bodies that lies inside the other; their surfaces do not intersect.
-enum class Inside : std::uint8_t {
-  kNone,    ///< neither, or only some components
-  kFixed,   ///< the fixed body
-  kMoving,  ///< the moving body
-};
-/// Returns "none", "fixed" or "moving".
-[[nodiscard]] IST_API const char* to_string(Inside inside) noexcept;
-
-/// Finds which body lies inside the other: by a point of each component of one body, and the
-/// winding number of the other body round that point. Both meshes must outlive the test.
-class IST_API InsideTest {
- public:
-  /// Finds the components of both meshes, and puts their triangles into trees. Throws
-  /// kMeshNotFinite or kMeshBadIndex. Cost: 0.4 µs a triangle.
-  InsideTest(const TriangleMesh& fixed, const TriangleMesh& moving);
-  InsideTest(const TriangleMesh&&, const TriangleMesh&) = delete;
-  InsideTest(const TriangleMesh&, const TriangleMesh&&) = delete;
-  InsideTest(const TriangleMesh&&, const TriangleMesh&&) = delete;
-  ~InsideTest();
-  InsideTest(InsideTest&&) noexcept;  ///< the other may then only be assigned or destroyed
-  InsideTest& operator=(InsideTest&&) noexcept;  ///< as the constructor
-
-  /// Returns the body of which all components lie inside the other. Precondition: `pose` is rigid,
-  /// and the surfaces do not intersect. Cost: some 3 µs for each component that lies in the
-  /// bounding box of the other body.
-  [[nodiscard]] Inside at(const Eigen::Isometry3d& pose) const noexcept;
-
- private:
-  std::unique_ptr<const detail::InsideState> state_;
 };
 
 }  // namespace ist

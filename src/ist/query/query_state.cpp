@@ -108,7 +108,7 @@ double QueryState::triangle_error(const Eigen::Isometry3d& pose) const noexcept 
 
 std::optional<Approach> QueryState::approach(const Eigen::Isometry3d& pose,
                                              double margin) const noexcept {
-  const auto relative = relative_pose(pose, fixed.parts().lattice, moving.parts().lattice);
+  const auto relative = relative_pose(pose, parts_of(fixed).lattice, parts_of(moving).lattice);
   if (!relative) return std::nullopt;
   return Approach{*relative, test_roots(fixed, moving, policy, *relative, margin), margin};
 }

@@ -12,6 +12,11 @@
 
 namespace ist {
 
+namespace detail {
+/// Returns the time that budgets compare their deadlines with.
+[[nodiscard]] IST_API std::chrono::steady_clock::time_point budget_now() noexcept;
+}  // namespace detail
+
 /// The limits of one query. They mean the same for every verb that takes them.
 ///
 /// A search never makes more tests than allowed, except for the root test, which it always makes.
@@ -32,8 +37,6 @@ struct Budget {
   std::uint64_t tests = std::numeric_limits<std::uint64_t>::max();
   /// The time at which the search ends; time_point::max(): never.
   Clock::time_point deadline = Clock::time_point::max();
-  /// The clock of the deadline.
-  Clock::time_point (*now)() noexcept = &Clock::now;
 
   /// Whether tests are limited.
   [[nodiscard]] bool has_tests() const noexcept {
@@ -44,10 +47,12 @@ struct Budget {
   /// Whether anything is limited.
   [[nodiscard]] bool is_limited() const noexcept { return has_tests() || has_deadline(); }
   /// Returns whether the deadline has passed. Reads the clock only if there is a deadline.
-  [[nodiscard]] bool is_past() const noexcept { return has_deadline() && now() >= deadline; }
+  [[nodiscard]] bool is_past() const noexcept {
+    return has_deadline() && detail::budget_now() >= deadline;
+  }
   /// Returns this budget with a limit of at most `most` tests.
   [[nodiscard]] Budget within(std::uint64_t most) const noexcept {
-    return {most < tests ? most : tests, deadline, now};
+    return {most < tests ? most : tests, deadline};
   }
 };
 
@@ -138,7 +143,7 @@ struct DistanceResult {
 /// Whether two bodies intersect. The numbers are the IST_ANSWER_... of C.
 enum class Answer : std::uint8_t {
   kUnknown,  ///< there is no answer: after an error, or after a budget that ended the search
-  kNo,       ///< the surfaces are apart; one body may lie inside the other (InsideTest)
+  kNo,       ///< the surfaces are apart; one body may lie inside the other (Query::inside)
   kNear,     ///< bounds of leaves overlap, and there are no triangles to decide by
   kYes,      ///< triangles have a point in common, exactly
 };
@@ -156,23 +161,20 @@ struct IntersectionResult {
   double rotation_error = 0;                ///< as QueryResult has it
 };
 
-/// How often the second worker of a query helped, since the query was made.
-struct Sharing {
-  std::uint64_t queries = 0;  ///< all queries
-  std::uint64_t worth = 0;    ///< queries with enough work to share
-  std::uint64_t shared = 0;   ///< queries that the worker took up
-  std::uint64_t chunks = 0;   ///< chunks of work that it did in them
-  std::uint64_t dropped = 0;  ///< chunks that it did too late, or had no room for
+/// The one of two bodies that lies inside the other.
+enum class Inside : std::uint8_t {
+  kNone,    ///< neither: their surfaces intersect, or a component lies outside
+  kFixed,   ///< the fixed body
+  kMoving,  ///< the moving body
+};
+/// Returns "none", "fixed" or "moving".
+[[nodiscard]] IST_API const char* to_string(Inside inside) noexcept;
 
-  /// Adds the counts of another query.
-  Sharing& operator+=(const Sharing& other) noexcept {
-    queries += other.queries;
-    worth += other.worth;
-    shared += other.shared;
-    chunks += other.chunks;
-    dropped += other.dropped;
-    return *this;
-  }
+/// The answer of Query::inside.
+struct InsideResult {
+  QueryStatus status = QueryStatus::kDone;  ///< other than kDone: there is no answer
+  Inside inside = Inside::kNone;            ///< the body inside
+  double rotation_error = 0;                ///< as QueryResult has it
 };
 
 /// Takes leaf pairs in order, many at a time, while a query finds them.

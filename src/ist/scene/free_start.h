@@ -7,6 +7,7 @@
 
 #include "ist/haptics/placement.h"
 #include "ist/mesh/mesh.h"
+#include "ist/query/inside.h"
 #include "ist/query/query.h"
 
 namespace ist {

@@ -27,7 +27,7 @@ void take_tree(LoadedBody& body, const std::filesystem::path& file, const Scene&
   body.frame = body.tree->frame();
   body.origin = body.tree->origin();
   if (body.tree->triangles()) {
-    body.mesh = std::make_unique<TriangleMesh>(body.tree->parts().triangles->mesh);
+    body.mesh = std::make_unique<TriangleMesh>(parts_of(*body.tree).triangles->mesh);
   }
 }
 

@@ -269,7 +269,7 @@ void Builder::build_simulation() {
   }
   parts.bodies = std::move(placed_);
   parts.effects = std::move(effects_);
-  built_.simulation = std::make_unique<Simulation>(std::move(parts));
+  built_.simulation = std::make_unique<Simulation>(detail::simulation_from(std::move(parts)));
 }
 
 Scene with_names(Scene scene) {

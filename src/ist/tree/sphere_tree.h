@@ -20,8 +20,9 @@
 namespace ist {
 
 namespace detail {
+struct Access;
 struct TreeParts;
-}
+}  // namespace detail
 
 /// How an octree node is read as a sphere.
 enum class SpherePolicy : std::uint8_t {
@@ -82,10 +83,6 @@ static_assert(sizeof(LeafPair) == 8);
 /// moved from may only be assigned to or destroyed. Lengths are in mesh units.
 class IST_API SphereTree {
  public:
-  /// Makes a tree of its content, for the library's own code: build_tree() and read_tree() are the
-  /// ways of users.
-  explicit SphereTree(detail::TreeParts parts);
-
   /// The edge of a voxel.
   [[nodiscard]] double voxel_size() const noexcept;
   /// The number of voxels that the surface meets.
@@ -128,10 +125,10 @@ class IST_API SphereTree {
   /// Bytes in memory, without the 24 a triangle that ist/measure.h adds at its first use.
   [[nodiscard]] std::uint64_t bytes() const noexcept;
 
-  /// The tree's content, for the library's own code: no installed header defines it.
-  [[nodiscard]] const detail::TreeParts& parts() const noexcept { return *parts_; }
-
  private:
+  friend struct detail::Access;
+  explicit SphereTree(detail::TreeParts parts);
+
   std::shared_ptr<const detail::TreeParts> parts_;
 };
 

@@ -125,7 +125,7 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
         LeafTriangles(std::move(mesh), std::move(voxels.triangles), parts.lattice.origin());
     end_stage("triangle clusters");
   }
-  return SphereTree(std::move(parts));
+  return tree_from(std::move(parts));
 }
 
 bool can_build_tree(const TriangleMesh& mesh, const BuildOptions& options, Progress* progress) {

@@ -223,29 +223,29 @@ void verify_triangles(const TreeReader& reader, const Lattice& lattice, const Tr
 
 std::uint64_t write(const SphereTree& tree, TreeWriter writer) {
   const ScopedFloatEnvironment environment;
-  const Lattice& lattice = tree.parts().lattice;
+  const Lattice& lattice = parts_of(tree).lattice;
   const MeshSource& source = tree.source();
   const std::uint32_t sections = (tree.has(SpherePolicy::kTight) ? kBallsSection : 0u) |
                                  (tree.has(SpherePolicy::kSlab) ? kSlabsSection : 0u) |
                                  (tree.triangles() ? kTrianglesSection : 0u) |
-                                 (tree.parts().proximity ? kProximitySection : 0u);
+                                 (parts_of(tree).proximity ? kProximitySection : 0u);
   writer.value(Header{
       lattice.corner, lattice.voxel_size, lattice.cells, static_cast<std::uint32_t>(lattice.depth),
       static_cast<std::uint32_t>(tree.orientation()), sections, source.hash,
       static_cast<std::uint8_t>(source.unit), static_cast<std::uint8_t>(tree.frame()), 0,
       static_cast<std::uint32_t>(source.name.size())});
   writer.array(source.name);
-  write_octree(writer, tree.parts().octree);
-  writer.array(tree.parts().normals);
+  write_octree(writer, parts_of(tree).octree);
+  writer.array(parts_of(tree).normals);
   if (tree.has(SpherePolicy::kTight)) {
-    write_bounds<PackedBall>(writer, tree.parts().octree, tree.parts().bounds.balls);
+    write_bounds<PackedBall>(writer, parts_of(tree).octree, parts_of(tree).bounds.balls);
   }
   if (tree.has(SpherePolicy::kSlab)) {
-    write_bounds<PackedSlab>(writer, tree.parts().octree, tree.parts().bounds.slabs);
+    write_bounds<PackedSlab>(writer, parts_of(tree).octree, parts_of(tree).bounds.slabs);
   }
   if (tree.triangles()) {
-    const TriangleMesh& mesh = tree.parts().triangles->mesh;
-    const TriangleLists& lists = tree.parts().triangles->lists;
+    const TriangleMesh& mesh = parts_of(tree).triangles->mesh;
+    const TriangleLists& lists = parts_of(tree).triangles->lists;
     writer.value(std::uint64_t{mesh.vertices.size()});
     writer.value(std::uint64_t{mesh.triangles.size()});
     writer.value(std::uint64_t{lists.ids.size()});
@@ -255,9 +255,9 @@ std::uint64_t write(const SphereTree& tree, TreeWriter writer) {
     writer.array(lists.first);
     writer.array(lists.ids);
   }
-  if (tree.parts().proximity) {
-    writer.value(static_cast<std::uint32_t>(tree.parts().proximity->octree.depth()));
-    write_octree(writer, tree.parts().proximity->octree);
+  if (parts_of(tree).proximity) {
+    writer.value(static_cast<std::uint32_t>(parts_of(tree).proximity->octree.depth()));
+    write_octree(writer, parts_of(tree).proximity->octree);
   }
   return writer.commit();
 }
@@ -320,7 +320,7 @@ SphereTree read(TreeReader reader) {
   parts.bounds.slabs = verified<SlabBlock>(reader, parts.octree, std::move(slabs),
                                            "a slab's numbers are out of range");
   if (proximity) parts.proximity = ProximityTree{verified(reader, std::move(*proximity))};
-  return SphereTree(std::move(parts));
+  return tree_from(std::move(parts));
 }
 
 }  // namespace

@@ -4,8 +4,10 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "ist/base/access.h"
 #include "ist/mesh/mesh.h"
 #include "ist/mesh/surface_sides.h"
 #include "ist/tree/bound_blocks.h"
@@ -132,5 +134,14 @@ struct TreeParts {
 }  // namespace detail
 
 using detail::TreeParts;
+
+/// Returns the content of a tree.
+[[nodiscard]] inline const TreeParts& parts_of(const SphereTree& tree) noexcept {
+  return detail::Access::parts(tree);
+}
+/// Makes a tree of its content.
+[[nodiscard]] inline SphereTree tree_from(TreeParts parts) {
+  return detail::Access::made_of<SphereTree>(std::move(parts));
+}
 
 }  // namespace ist

@@ -10,7 +10,7 @@ namespace ist::viewer {
 namespace {
 
 void fill_slabs(const SphereTree& tree, int level, Reply& reply) {
-  const TreeParts& parts = tree.parts();
+  const TreeParts& parts = parts_of(tree);
   const std::uint32_t parents = level == tree.depth() ? 1 : parts.octree.node_count(level + 1);
   std::vector<float> normals, offsets, halves;
   for (std::uint32_t parent = 0; parent < parents; ++parent) {

@@ -125,7 +125,7 @@ nlohmann::ordered_json PageBody::tree_facts() const {
   const SphereTree& tree = *tree_;
   nlohmann::ordered_json nodes = nlohmann::ordered_json::array();
   for (int level = 0; level <= tree.depth(); ++level) {
-    nodes.push_back(tree.parts().octree.node_count(level));
+    nodes.push_back(parts_of(tree).octree.node_count(level));
   }
   return {{"voxel_size", tree.voxel_size()},
           {"leaves", tree.leaf_count()},

@@ -63,7 +63,7 @@ class TwoPlates : public ::testing::Test {
     friction_ = friction.get();
     parts.effects.push_back(std::move(contact));
     parts.effects.push_back(std::move(friction));
-    return Simulation(std::move(parts));
+    return detail::simulation_from(std::move(parts));
   }
 
   const SphereTree floor_ = half_millimetre_voxels(box({-20, -20, -4}, {4, 20, 0})),

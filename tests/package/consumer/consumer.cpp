@@ -1,10 +1,16 @@
 // A program of someone else's: what it asks for has an answer that it counts by itself. Prints what
 // it found, the same for everyone.
+#include <ist/haptics.h>
 #include <ist/ist.h>
+#include <ist/measure.h>
+#include <ist/models/models.h>
+#include <ist/query/reference/reference_query.h>
+#include <ist/scene.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <vector>
 
 #include "../layout.h"
@@ -88,6 +94,71 @@ void ask_more(const ist::SphereTree& fixed, const ist::SphereTree& moving) {
               query.target());
 }
 
+// The depth of one box in the other, and the way until they meet.
+void measure(const ist::SphereTree& fixed, const ist::SphereTree& moving) {
+  ist::Query query(fixed, moving);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation().x() = kCells - 0.25;
+  const ist::Penetration found = ist::penetration(query, pose, 1e-3);
+  require(found.complete && found.lower <= 0.25 && 0.25 <= found.upper,
+          "the depth is not in its interval");
+  pose.translation().x() = kCells + 2;
+  const ist::Motion motion = ist::Motion::between(pose, Eigen::Isometry3d::Identity());
+  const ist::FirstContact first = ist::first_contact(query, motion, 1e-3);
+  require(first.status == ist::FirstContact::Status::kContact, "boxes pass through each other");
+  const Eigen::Isometry3d there = motion.at(first.upper);
+  require(there.translation().x() <= kCells && kCells - 0.01 <= there.translation().x(),
+          "boxes meet elsewhere");
+  const std::optional<Eigen::Isometry3d> back = ist::compose_rigid(there.inverse(), there);
+  require(back && (back->matrix() - Eigen::Matrix4d::Identity()).norm() < 1e-12,
+          "a motion and its inverse leave a motion");
+  ist::World world;
+  world.add(fixed);
+  world.add(moving, pose);
+  require(world.pose_of(0, 1)->matrix() == pose.matrix(), "a world has another pose");
+  std::printf("depth %a to %a, contact at %a\n", found.lower, found.upper, first.upper);
+}
+
+// A ball above a box, for a hand that lowers it.
+ist::BuiltScene scene() {
+  using Shape = ist::BuiltInShape;
+  ist::Scene scene{.unit = 1e-3};
+  scene.fixed[0].source = Shape{.kind = Shape::Kind::kBox, .size = {kCells, kCells, kCells}};
+  scene.held[0].source = Shape{.kind = Shape::Kind::kSphere, .radius = 2};
+  scene.held[0].translation.z() = kCells / 2 + 2.5;
+  for (ist::SceneBody* body : {&scene.fixed[0], &scene.held[0]}) body->voxel_size = 0.5;
+  scene.device = ist::NullSettings{{.damping = 2, .angular_damping = 2e-3}};
+  scene.contact = ist::ContactSettings{};
+  return ist::build_scene(scene);
+}
+
+// The ball is pressed on the box. A recording of its ticks gives the same forces once more.
+void press() {
+  constexpr std::size_t kTicks = 100;
+  const ist::BuiltScene built = scene();
+  ist::TickRing<ist::TickRecord> ring(kTicks);
+  ist::Placement hand = *built.device->read();
+  for (std::uint64_t tick = 0; tick < kTicks; ++tick) {
+    hand.translation.z() -= 1e-5;
+    const ist::Tick made = built.simulation->tick(hand);
+    require(!made.fault && ring.push(ist::record_of(tick, built.simulation->dt(), made, true)),
+            "a tick failed");
+  }
+  std::vector<ist::TickRecord> records(kTicks);
+  require(ring.pop(records) == kTicks, "the ring has lost records");
+  require(records.front().wrench[2] < 0.01 && records.back().wrench[2] > 0.1,
+          "the box does not push the ball away");
+  const ist::BuiltScene again = scene();
+  for (const ist::TickRecord& record : records) {
+    const ist::TickRecord made = ist::replay(
+        {.tick = record.tick, .device = ist::to_placement(record.device)}, *again.simulation);
+    require(made.wrench == record.wrench && made.tool == record.tool,
+            "the recording gives other forces");
+  }
+  const Eigen::Isometry3d tool = again.simulation->tool_pose().isometry();
+  std::printf("force %a N, tool at %a m\n", records.back().wrench[2], tool.translation().z());
+}
+
 // An error that the library throws is caught by its type and its code.
 void catch_error() {
   try {
@@ -110,5 +181,7 @@ int main(int argc, char** argv) {
   std::printf("a tree of %u leaves, %ju bytes\n", read.leaf_count(), std::uintmax_t{bytes});
   count_leaf_pairs(made, read);
   ask_more(read, made);
+  measure(made, read);
+  press();
   catch_error();
 }

@@ -3,6 +3,7 @@
 #include <ist/hardware/quantized_pose.h>
 #include <ist/hardware/table_rom.h>
 #include <ist/ist.h>
+#include <ist/models/models.h>
 
 #include <cstdio>
 

@@ -83,6 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Policies, CoherentDeadline,
 
 // From many poses on, at each look at the clock.
 TEST_P(CoherentDeadline, ThatPassesAtAnyLookGivesAllOrAPart) {
+  const ScopedBudgetClock clock(LateClock::now);
   const Scene& scene = shells();
   const double voxel = scene.fixed.voxel_size();
   int cut = 0, cut_kept = 0, all = 0;
@@ -130,6 +131,7 @@ TEST_P(CoherentDeadline, ThatPassesAtAnyLookGivesAllOrAPart) {
 }
 
 TEST_P(CoherentDeadline, OnEveryTickGivesAllOrAPart) {
+  const ScopedBudgetClock clock(LateClock::now);
   int cut = 0, kept = 0;
   for (int run = 0; run < samples(30); ++run) {
     Random random(static_cast<std::uint64_t>(run));

@@ -13,6 +13,7 @@
 #include <optional>
 #include <thread>
 
+#include "ist/query/workers/sharing.h"
 #include "query/coherent/kept_answers.h"
 #include "query/coherent/motions.h"
 #include "query/workers/stall.h"
@@ -89,7 +90,7 @@ TEST_F(CoherentQueryThread, AnswersWithoutAWorkerThatStalls) {
     }
     ASSERT_TRUE(tick_until_kept(answers));  // it goes on
   }
-  EXPECT_EQ(answers.kept().sharing().worth, 0u);
+  EXPECT_EQ(sharing_of(answers.kept()).worth, 0u);
 }
 
 // It stalls each time it reaches a point, for a while that ends at any moment of a later tick.

@@ -23,7 +23,7 @@ struct FrontCase {
         kernels(select_kernels(target)) {}
 
   [[nodiscard]] RelativePose relative(const Eigen::Isometry3d& pose) const {
-    return *relative_pose(pose, fixed.parts().lattice, moving.parts().lattice);
+    return *relative_pose(pose, parts_of(fixed).lattice, parts_of(moving).lattice);
   }
   [[nodiscard]] FrontSearch::Wanted wanted(
       const RelativePose& centre, double extent,

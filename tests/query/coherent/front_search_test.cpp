@@ -105,6 +105,7 @@ TEST_P(FrontSearchOf, GivesInSlicesWhatItGivesInOneGo) {
 
 // A deadline ends a part in the same way as a limit of tests.
 TEST_P(FrontSearchOf, GoesOnAfterADeadline) {
+  const ScopedBudgetClock clock(LateClock::now);
   const Scene& scene = solids()[0];
   const FrontCase scene_case(scene.fixed, scene.moving, GetParam());
   Front whole(kRoom), parts(kRoom);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "ist/query/workers/sharing.h"
 #include "query/contacts/contact_cases.h"
 #include "query/scenes.h"
 #include "query/test_clocks.h"
@@ -81,6 +82,7 @@ TEST(ContactsWithinABudget, StopWhereTheyStoppedBefore) {
 
 // The clock is late from any look on. The tests that it had made stop it there too.
 TEST(ContactsWithinADeadline, StopWhereTheyStoppedBefore) {
+  const ScopedBudgetClock clock(LateClock::now);
   const Scene& scene = jaws();
   int stopped = 0;
   Query query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
@@ -116,7 +118,7 @@ TEST(ContactsOfTwoWorkers, AreThoseOfOneAndStopWhereTheyStoppedBefore) {
   const FoundContacts whole = find_contacts_within(one, points, scene.pose, {});
   ASSERT_GT(whole.result.leaf_pairs, 1000u);
   int stopped = 0;
-  for (int i = 0; i < 400 || two.sharing().chunks < 20; ++i) {
+  for (int i = 0; i < 400 || sharing_of(two).chunks < 20; ++i) {
     Budget budget{.deadline = Budget::Clock::now()};
     budget.deadline += i < 200 ? std::chrono::microseconds(2 * i) : std::chrono::hours(1);
     const FoundContacts first = find_contacts_within(two, points, scene.pose, budget);

@@ -110,7 +110,7 @@ TEST(ContactManifold, HasTheSumsAndContactsOfItsLeafPairsInDouble) {
         for (const Contact& p : found.points) weight += p.weight;
         EXPECT_NEAR(weight, found.sums.weight,
                     rounding * points.rates().weight * static_cast<double>(found.sums.pairs));
-        const double whole = points.reducer().scale().area;
+        const double whole = detail::reducer_of(points).scale().area;
         contacts += expect_contacts(found.points, plain_points(wanted), 0.01 * whole, rounding);
       }
     }
@@ -128,14 +128,14 @@ TEST(ContactManifold, HasTheMeansOfEachFixedLeaf) {
       SCOPED_TRACE(scene->name + ", " + std::string(to_string(policy)));
       Query query(scene->fixed, scene->moving, options_of(policy));
       ContactManifold points(scene->fixed, scene->moving, policy, {.points = 0, .margin = 2});
-      const LinearOctree& octree = scene->fixed.parts().octree;
+      const LinearOctree& octree = parts_of(scene->fixed).octree;
       LeafSums leaves(octree, octree.leaf_count());
-      points.reducer().adder().stream = &leaves;
+      detail::reducer_of(points).adder().stream = &leaves;
       static_cast<void>(query.contacts(scene->pose, points));
       leaves.close();
       const PlainContacts plain(scene->fixed, scene->moving, policy, {.margin = 2});
       const auto wanted = plain_points(plain.of(ask(query, scene->pose).leaf_pairs, scene->pose));
-      const double whole = points.reducer().scale().area,
+      const double whole = detail::reducer_of(points).scale().area,
                    rounding = rounding_of(scene->fixed, points);
       std::size_t checked = 0;
       for (const LeafSum& leaf : leaves.nodes()) {
@@ -146,7 +146,7 @@ TEST(ContactManifold, HasTheMeansOfEachFixedLeaf) {
         if (weight < 0.01 * whole) continue;
         const Contact& p = point->second;
         EXPECT_NEAR(weight, p.weight, of_pairs);
-        EXPECT_NEAR(leaf.depth / leaf.weight - 2 * points.reducer().scale().size, p.depth,
+        EXPECT_NEAR(leaf.depth / leaf.weight - 2 * detail::reducer_of(points).scale().size, p.depth,
                     1e3 * rounding);
         ++checked;
       }

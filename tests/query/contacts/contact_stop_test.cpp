@@ -90,6 +90,7 @@ TEST(StoppedContacts, TellNoWiderIntervalWithAReach) {
 }
 
 TEST(StoppedContacts, EndAtTheFirstLookAfterTheDeadline) {
+  const ScopedBudgetClock clock(LateClock::now);
   const Scene& scene = solids()[0];
   for (const SpherePolicy policy : kSpherePolicies) {
     Query query(scene.fixed, scene.moving, options_of(policy));
@@ -136,11 +137,11 @@ TEST(StoppedContacts, ReadTheClockOftenEnough) {
   Search search(plan, kernels, 1 << 16);
   detail::ContactReducer reducer(scene.fixed, scene.moving, policy, {});
   const SearchPose pose = to_float(
-      *relative_pose(scene.pose, scene.fixed.parts().lattice, scene.moving.parts().lattice),
+      *relative_pose(scene.pose, parts_of(scene.fixed).lattice, parts_of(scene.moving).lattice),
       lengths_of(scene.fixed, policy), lengths_of(scene.moving, policy));
   ContactOutput sink(plan, kernels, pose, reducer.adder(), reducer.leaf_sums());
-  const Budget budget{.deadline = Budget::Clock::time_point(std::chrono::seconds(1)),
-                      .now = FakeClock::now};
+  const Budget budget{.deadline = Budget::Clock::time_point(std::chrono::seconds(1))};
+  const ScopedBudgetClock clock(FakeClock::now);
   Watched watched(pose, sink, BudgetMeter(budget));
   EXPECT_EQ(search.run(watched), plan.steps().size());
   EXPECT_LE(watched.most_tests, 500u);  // as Budget states

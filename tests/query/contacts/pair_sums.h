@@ -35,12 +35,12 @@ struct PairSums {
       }
     }
   } recorder;
-  detail::ContactReducer& reducer = points.reducer();
+  detail::ContactReducer& reducer = detail::reducer_of(points);
   reducer.adder().stream = &recorder;
   static_cast<void>(query.contacts(pose, points));
   const std::vector<LeafPair> leaves = ask(query, pose).leaf_pairs;
   EXPECT_EQ(leaves.size(), recorder.pairs.size());
-  const auto relative = relative_pose(pose, fixed.parts().lattice, moving.parts().lattice);
+  const auto relative = relative_pose(pose, parts_of(fixed).lattice, parts_of(moving).lattice);
   std::vector<PairSums> all;
   for (std::size_t i = 0; i < leaves.size() && i < recorder.pairs.size(); ++i) {
     if (!(recorder.pairs[i].weight > 0)) continue;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ist/query/inside.h"
 #include "ist/query/query.h"
 #include "ist/tree/sphere_tree.h"
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ist/query/inside.h"
 #include "ist/query/query.h"
 #include "ist/tree/tree_parts.h"
 #include "query/exact/exact_tree.h"
@@ -33,7 +34,7 @@ TEST(QueryDistance, HoldsTheDistance) {
       const Eigen::Isometry3d pose =
           pose_of(rotation, to + random.uniform(0, 1.5) * random.direction());
       const double distance =
-          mesh_distance(fixed.parts().triangles->mesh, moving.parts().triangles->mesh, pose);
+          mesh_distance(parts_of(fixed).triangles->mesh, parts_of(moving).triangles->mesh, pose);
       (distance > 0 ? apart : touching) += 1;
       for (const SpherePolicy policy : kSpherePolicies) {
         QueryOptions options;
@@ -88,7 +89,7 @@ TEST(QueryDistance, OfShellsThatAreNearInManyPlaces) {
     for (int k = 0; k < 3; ++k) {
       const Eigen::Isometry3d pose = pose_of(random.rotation(), {0, 0, 0});
       const double distance =
-          mesh_distance(fixed.parts().triangles->mesh, moving.parts().triangles->mesh, pose);
+          mesh_distance(parts_of(fixed).triangles->mesh, parts_of(moving).triangles->mesh, pose);
       ASSERT_GT(distance, 0);
       for (const double tolerance : {0.0, 0.3 * distance}) {
         const DistanceInterval gap = query.distance(pose, tolerance).distance;
@@ -184,6 +185,40 @@ TEST(InsideTest, TellsWhoIsInWhom) {
   EXPECT_EQ(InsideTest(large, two).at(here), Inside::kNone);  // one of two
   EXPECT_EQ(InsideTest(shell, small).at(here), Inside::kMoving);
   EXPECT_STREQ(to_string(Inside::kMoving), "moving");
+}
+
+TEST(QueryInside, TellsWhoIsInWhom) {
+  const TriangleMesh small = box({-1, -1, -1}, {1, 1, 1});
+  const SphereTree outer = exact_tree(icosphere(2, 3), 12), inner = exact_tree(small, 8),
+                   two = exact_tree(joined(small, moved(small, {10, 0, 0})), 24);
+  Query query(outer, inner), other(inner, outer), of_two(outer, two);
+  const Eigen::Isometry3d here = shift({0.1, 0.2, 0.3});
+  EXPECT_EQ(query.inside(here).inside, Inside::kMoving);
+  EXPECT_EQ(other.inside(here).inside, Inside::kFixed);
+  EXPECT_EQ(query.inside(shift({7, 0, 0})).inside, Inside::kNone);
+  EXPECT_EQ(of_two.inside(here).inside, Inside::kNone);  // one of two
+  // Through the surface, with each vertex of the one or of the other face inside.
+  for (const double side : {-2.5, 2.5}) {
+    const Eigen::Isometry3d across = shift({side, 0, 0});
+    ASSERT_EQ(query.intersects(across).answer, Answer::kYes);
+    EXPECT_EQ(query.inside(across).inside, Inside::kNone);
+    EXPECT_EQ(query.inside(across).status, QueryStatus::kDone);
+  }
+}
+
+TEST(QueryInside, SaysWhyThereIsNoAnswer) {
+  const TriangleMesh mesh = icosphere(2, 3);
+  const SphereTree tree = exact_tree(mesh, 12), plain = tree_of(mesh, 12);
+  Query query(tree, tree), without(tree, plain);
+  EXPECT_EQ(without.inside(shift({0, 0, 0})).status, QueryStatus::kNoTriangles);
+  Eigen::Isometry3d bad = Eigen::Isometry3d::Identity();
+  bad.matrix()(1, 1) = -1;
+  EXPECT_EQ(query.inside(bad).status, QueryStatus::kInvalidPose);
+  bad.matrix()(1, 1) = 1 + 1e-6;
+  const InsideResult nearly = query.inside(bad);
+  EXPECT_EQ(nearly.status, QueryStatus::kDone);
+  EXPECT_EQ(nearly.rotation_error, rotation_error(bad));
+  EXPECT_GT(nearly.rotation_error, 0);
 }
 
 }  // namespace

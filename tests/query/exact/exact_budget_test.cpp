@@ -5,6 +5,7 @@
 
 #include "ist/query/query.h"
 #include "query/exact/exact_tree.h"
+#include "query/test_clocks.h"
 #include "simd/targets.h"
 #include "support/shapes.h"
 
@@ -120,7 +121,7 @@ TEST_F(ExactBudget, OfTimeIsLookedAtOftenEnough) {
   const std::uint64_t all = fresh.triangle_pairs(meeting_, pairs).triangle_pairs;
   Budget budget;
   budget.deadline = Budget::Clock::time_point(std::chrono::seconds(1));
-  budget.now = &late_at_last;
+  const ScopedBudgetClock clock(late_at_last);
   for (glances_left = 0; glances_left < 40; ++glances_left) {
     query.forget();
     glances = 0;
@@ -151,7 +152,7 @@ TEST_F(ExactBudget, OfTimeEndsExactArithmetic) {
   ASSERT_GT(all, 10'000u);
   Budget budget;
   budget.deadline = Budget::Clock::time_point(std::chrono::seconds(1));
-  budget.now = &late_at_last;
+  const ScopedBudgetClock clock(late_at_last);
   std::uint64_t most = 0;
   for (glances_left = 0; glances_left < 2000; glances_left += 97) {
     glances = 0;

@@ -24,8 +24,8 @@ namespace ist::test {
 
 /// The same tree without its triangles: as it would have been built.
 [[nodiscard]] inline SphereTree without_triangles(const SphereTree& tree) {
-  return SphereTree({tree.parts().lattice, tree.parts().octree, tree.orientation(),
-                     tree.parts().normals, tree.parts().bounds, std::nullopt, std::nullopt});
+  return tree_from({parts_of(tree).lattice, parts_of(tree).octree, tree.orientation(),
+                    parts_of(tree).normals, parts_of(tree).bounds, std::nullopt, std::nullopt});
 }
 
 }  // namespace ist::test

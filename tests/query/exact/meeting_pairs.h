@@ -21,8 +21,8 @@ namespace ist::test {
                                                              const SphereTree& moving,
                                                              const Eigen::Isometry3d& pose) {
   const Eigen::Isometry3d m = rigid_pose(pose);
-  const TriangleMesh& a = fixed.parts().triangles->mesh;
-  TriangleMesh b = moving.parts().triangles->mesh;
+  const TriangleMesh& a = parts_of(fixed).triangles->mesh;
+  TriangleMesh b = parts_of(moving).triangles->mesh;
   for (Eigen::Vector3d& v : b.vertices) {
     const Eigen::Vector3d x = v;
     for (Eigen::Index i = 0; i < 3; ++i) {

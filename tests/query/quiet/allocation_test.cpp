@@ -4,6 +4,7 @@
 #include <new>
 
 #include "ist/query/reference/reference_query.h"
+#include "ist/query/workers/sharing.h"
 #include "query/exact/exact_tree.h"
 #include "query/quiet/allocations.h"
 #include "query/scenes.h"
@@ -114,7 +115,7 @@ TEST(Allocations, NorDoesOneThatTheWorkerHelpsWith) {
   std::vector<LeafPair> out(1 << 16);
   Query query(scene.fixed, scene.moving, options_of(SpherePolicy::kTight, "", 2));
   EXPECT_EQ(allocations_of([&] {
-              while (query.sharing().chunks < 200) {
+              while (sharing_of(query).chunks < 200) {
                 static_cast<void>(query.leaf_pairs(scene.pose, out));
               }
             }),

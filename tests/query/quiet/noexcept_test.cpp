@@ -10,10 +10,10 @@
 namespace ist::test {
 namespace {
 
-[[maybe_unused]] void verbs_of_a_query(Query& query, const InsideTest& inside,
-                                       ContactManifold& manifold, const Eigen::Isometry3d& pose,
-                                       const Budget& budget, std::span<LeafPair> leaf_pairs,
-                                       LeafPairStream& stream, std::span<TrianglePair> triangles) {
+[[maybe_unused]] void verbs_of_a_query(Query& query, ContactManifold& manifold,
+                                       const Eigen::Isometry3d& pose, const Budget& budget,
+                                       std::span<LeafPair> leaf_pairs, LeafPairStream& stream,
+                                       std::span<TrianglePair> triangles) {
   static_assert(noexcept(query.intersects(pose, budget)));
   static_assert(noexcept(query.leaf_pairs(pose, leaf_pairs, budget)));
   static_assert(noexcept(query.leaf_pairs(pose, stream)));
@@ -21,8 +21,6 @@ namespace {
   static_assert(noexcept(query.distance(pose, 0.0, budget)));
   static_assert(noexcept(query.triangle_pairs(pose, triangles, budget)));
   static_assert(noexcept(query.forget()));
-  static_assert(noexcept(query.sharing()));
-  static_assert(noexcept(inside.at(pose)));
   static_assert(noexcept(manifold.points()));
   static_assert(noexcept(manifold.sums()));
   static_assert(noexcept(manifold.wrench(1.0)));

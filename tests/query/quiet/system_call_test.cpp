@@ -5,6 +5,7 @@
 #include <csignal>
 
 #include "ist/query/workers/resident_worker.h"
+#include "ist/query/workers/sharing.h"
 #include "query/exact/exact_tree.h"
 #include "query/quiet/world_ticks.h"
 #include "query/scenes.h"
@@ -34,12 +35,12 @@ void query_in_silence(const Scene& scene, SpherePolicy policy, int workers) {
   std::vector<LeafPair> out(1 << 16);
   Query query(scene.fixed, scene.moving, options_of(policy, "", workers));
   const auto enough = [&](std::uint64_t helped) {
-    return workers == 1 || query.sharing().chunks >= helped;
+    return workers == 1 || sharing_of(query).chunks >= helped;
   };
   while (!enough(1)) {  // it is there
     static_cast<void>(query.leaf_pairs(scene.pose, out));
   }
-  const std::uint64_t helped = query.sharing().chunks + 100;
+  const std::uint64_t helped = sharing_of(query).chunks + 100;
   forbid_system_calls();
   for (int i = 0; i < 1000 || !enough(helped); ++i) {
     Eigen::Isometry3d pose = scene.pose;

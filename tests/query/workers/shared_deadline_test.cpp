@@ -11,6 +11,7 @@
 #include "ist/query/relative_pose.h"
 #include "ist/query/traversal/search_pose.h"
 #include "ist/query/workers/shared_search.h"
+#include "ist/query/workers/sharing.h"
 #include "ist/tree/tree_parts.h"
 #include "query/contacts/contact_cases.h"
 #include "query/scenes.h"
@@ -112,10 +113,11 @@ class WatchedSharedSearchThread : public SharedDeadlineThread {
   const Kernels kernels_ = watched_kernels();
   ist::SharedSearch search_{plan_, kernels_, 1 << 16, 0ns};
   const SearchPose pose_ = to_float(
-      *relative_pose(scene_.pose, scene_.fixed.parts().lattice, scene_.moving.parts().lattice),
+      *relative_pose(scene_.pose, parts_of(scene_.fixed).lattice, parts_of(scene_.moving).lattice),
       lengths_of(scene_.fixed, SpherePolicy::kSlab),
       lengths_of(scene_.moving, SpherePolicy::kSlab));
-  const Budget budget_{.deadline = Clock::time_point(1s), .now = Watch::now};
+  const Budget budget_{.deadline = Clock::time_point(1s)};
+  const ScopedBudgetClock clock_{Watch::now};
 };
 
 TEST_F(WatchedSharedSearchThread, ReadsTheClockOftenEnoughForLeafPairs) {
@@ -139,6 +141,7 @@ TEST_F(WatchedSharedSearchThread, ReadsTheClockOftenEnoughForContacts) {
 // Whichever look of the caller's is the first late one; or at the look after it, where that one
 // only said how long to wait for the worker.
 TEST_F(SharedDeadlineThread, EndsTheSearchAtTheFirstLookAfterIt) {
+  const ScopedBudgetClock clock(LateClock::now);
   Query query(scene_.fixed, scene_.moving, shared_);
   ContactManifold points(scene_.fixed, scene_.moving, SpherePolicy::kSlab, {.margin = 2});
   ASSERT_TRUE(ask_until_helped(query));
@@ -146,13 +149,13 @@ TEST_F(SharedDeadlineThread, EndsTheSearchAtTheFirstLookAfterIt) {
     int stopped = 0, within_shared = 0;
     bool complete = false;
     for (int allowed = 0; !complete && allowed < 100'000; allowed += 1 + allowed / 50) {
-      const std::uint64_t before = query.sharing().shared;
+      const std::uint64_t before = sharing_of(query).shared;
       const QueryResult result = ask(LateClock::budget_of(allowed));
       complete = result.complete;
       EXPECT_LE(LateClock::looks, allowed + 2);
       if (complete) continue;
       ++stopped;
-      within_shared += query.sharing().shared > before ? 1 : 0;
+      within_shared += sharing_of(query).shared > before ? 1 : 0;
       EXPECT_GE(LateClock::looks, allowed + 1);
       const QueryResult again = ask(Budget{.tests = result.sphere_tests});
       EXPECT_EQ(again.sphere_tests, result.sphere_tests);

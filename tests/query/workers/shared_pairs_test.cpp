@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ist/query/query.h"
+#include "ist/query/workers/sharing.h"
 #include "query/query_cases.h"
 #include "query/workers/shared_query_case.h"
 #include "support/shapes.h"
@@ -49,8 +50,8 @@ TEST_F(SharedPairsThread, GiveTheAnswerOfOneWorker) {
   EXPECT_GT(expected_.pairs.size(), 1000u);
   EXPECT_TRUE(expected_.complete);
   int queries = 0;
-  EXPECT_TRUE(ask_until(query, [&] { return ++queries >= 100 && query.sharing().chunks > 20; }));
-  std::cout << query.sharing().chunks << " chunks helped in " << queries << " queries\n";
+  EXPECT_TRUE(ask_until(query, [&] { return ++queries >= 100 && sharing_of(query).chunks > 20; }));
+  std::cout << sharing_of(query).chunks << " chunks helped in " << queries << " queries\n";
 }
 
 TEST_F(SharedPairsThread, DoWithoutAWorkerThatStalls) {
@@ -60,9 +61,9 @@ TEST_F(SharedPairsThread, DoWithoutAWorkerThatStalls) {
     {
       const Stall stall(point);
       ASSERT_TRUE(ask_until(query, Stall::reached));
-      const std::uint64_t helped = query.sharing().chunks;
+      const std::uint64_t helped = sharing_of(query).chunks;
       for (int later = 0; later < 10; ++later) ASSERT_EQ(ask_for(query), expected_);
-      EXPECT_EQ(query.sharing().chunks, helped);
+      EXPECT_EQ(sharing_of(query).chunks, helped);
     }
     ASSERT_TRUE(ask_until_helped(query));  // it works again
   }

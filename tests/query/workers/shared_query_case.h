@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ist/query/query.h"
+#include "ist/query/workers/sharing.h"
 #include "query/workers/stall.h"
 
 namespace ist::test {
@@ -32,9 +33,9 @@ inline bool ask_until(const std::function<bool()>& is_right, const std::function
 /// that is late leaves one chunk, its last, to the caller. If it left two, it had no room for one
 /// of them.
 inline bool ask_until_short_of_room(const Query& query, const std::function<bool()>& is_right) {
-  Sharing now = query.sharing();
+  Sharing now = sharing_of(query);
   return ask_until(is_right, [&] {
-    const Sharing before = std::exchange(now, query.sharing());
+    const Sharing before = std::exchange(now, sharing_of(query));
     return now.dropped >= before.dropped + 2 && now.chunks > before.chunks;
   });
 }
@@ -55,8 +56,8 @@ class SharedQueryTest : public ::testing::Test {
   }
   /// Until the second worker has done a part.
   bool ask_until_helped(Query& query) {
-    const std::uint64_t before = query.sharing().chunks;
-    return ask_until(query, [&] { return query.sharing().chunks > before; });
+    const std::uint64_t before = sharing_of(query).chunks;
+    return ask_until(query, [&] { return sharing_of(query).chunks > before; });
   }
   /// Lets a worker that stalls go on after `pause`, in the midst of later queries. Asks until it
   /// has then done a part again.

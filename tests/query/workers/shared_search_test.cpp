@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "ist/query/workers/sharing.h"
 #include "ist/tree/sphere_tree.h"
 #include "query/scenes.h"
 #include "query/workers/shared_query_case.h"
@@ -33,8 +34,8 @@ class SharedSearchThread : public SharedQueryTest {
 TEST_F(SharedSearchThread, GivesTheAnswerOfOneWorker) {
   Query query(scene_.fixed, scene_.moving, shared_);
   int queries = 0;
-  EXPECT_TRUE(ask_until(query, [&] { return ++queries >= 100 && query.sharing().chunks > 20; }));
-  std::cout << query.sharing().chunks << " chunks helped in " << queries << " queries\n";
+  EXPECT_TRUE(ask_until(query, [&] { return ++queries >= 100 && sharing_of(query).chunks > 20; }));
+  std::cout << sharing_of(query).chunks << " chunks helped in " << queries << " queries\n";
 }
 
 TEST_F(SharedSearchThread, DoesWithoutAWorkerThatStalls) {
@@ -44,11 +45,11 @@ TEST_F(SharedSearchThread, DoesWithoutAWorkerThatStalls) {
     {
       const Stall stall(point);
       ASSERT_TRUE(ask_until(query, Stall::reached));
-      const std::uint64_t helped = query.sharing().chunks;
+      const std::uint64_t helped = sharing_of(query).chunks;
       for (int later = 0; later < 10; ++later) {
         ASSERT_TRUE(same(ask(query, scene_.pose), expected_));
       }
-      EXPECT_EQ(query.sharing().chunks, helped);
+      EXPECT_EQ(sharing_of(query).chunks, helped);
     }
     ASSERT_TRUE(ask_until_helped(query));  // it works again
   }
@@ -86,8 +87,8 @@ TEST_F(SharedSearchThread, SeveralQueriesShareTheWorker) {
   for (int owner = 0; owner < 3; ++owner) {
     owners.emplace_back([this, &helped] {
       Query query(scene_.fixed, scene_.moving, shared_);
-      EXPECT_TRUE(ask_until(query, [&] { return query.sharing().chunks > 10; }));
-      helped += query.sharing().chunks;
+      EXPECT_TRUE(ask_until(query, [&] { return sharing_of(query).chunks > 10; }));
+      helped += sharing_of(query).chunks;
     });
   }
   owners.clear();
@@ -100,12 +101,12 @@ TEST_F(SharedSearchThread, WhatADeadlineCutsShortSpoilsNothing) {
   int turn = 0, cut = 0;
   std::uint64_t helped = 0;  // where there was a deadline
   EXPECT_TRUE(ask_until(query, [&] {
-    const std::uint64_t before = query.sharing().chunks;
+    const std::uint64_t before = sharing_of(query).chunks;
     // Every other one has time enough, however slow the machine is.
     const auto time = turn % 2 == 0 ? Clock::duration((turn % 40) * 20us) : Clock::duration(1h);
     const Budget budget{.deadline = Clock::now() + time};
     cut += query.contacts(scene_.pose, points, budget).complete ? 0 : 1;
-    helped += query.sharing().chunks - before;
+    helped += sharing_of(query).chunks - before;
     return ++turn >= 100 && helped > 20;
   }));
   EXPECT_GT(cut, 0);
@@ -148,7 +149,7 @@ TEST_F(SharedSearchThread, PosesOfAnySizeFollowEachOther) {
   int turn = 0;
   EXPECT_TRUE(ask_until(query, [&] {
     for (const auto& [pose, answer] : cases) EXPECT_TRUE(same(ask(query, pose), answer));
-    return HasFailure() || (++turn >= 20 && query.sharing().chunks > 10);
+    return HasFailure() || (++turn >= 20 && sharing_of(query).chunks > 10);
   }));
 }
 

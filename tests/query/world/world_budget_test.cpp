@@ -54,6 +54,7 @@ TEST_F(WorldBudget, OfTestsIsOneForAllPairs) {
 }
 
 TEST_F(WorldBudget, OfTimeEndsTheWholeCall) {
+  const ScopedBudgetClock clock(LateClock::now);
   int early = 0, reached = 0;
   for (int looks = 0; looks < 60; ++looks) {
     const auto answer = world_.ask(leaf_pairs_in(leaf_pairs_), LateClock::budget_of(looks));
@@ -133,9 +134,9 @@ struct Intruder {
 TEST_F(WorldBudget, AWorldInUseSaysThatItIsBusy) {
   const auto before = world_.ask(leaf_pairs_in(leaf_pairs_)).pairs.size();
   Intruder::world = &world_;
-  const auto answer = world_.ask(
-      leaf_pairs_in(leaf_pairs_),
-      {.deadline = Budget::Clock::time_point(std::chrono::hours(1)), .now = Intruder::now});
+  const ScopedBudgetClock clock(Intruder::now);
+  const auto answer = world_.ask(leaf_pairs_in(leaf_pairs_),
+                                 {.deadline = Budget::Clock::time_point(std::chrono::hours(1))});
   EXPECT_EQ(Intruder::busy, std::vector<QueryStatus>(8, QueryStatus::kBusy));
   EXPECT_TRUE(answer.complete);
   EXPECT_EQ(answer.pairs.size(), before);

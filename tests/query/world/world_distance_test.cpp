@@ -18,8 +18,9 @@ constexpr double kRounding = 1e-6;
 
 // The true distance of each pair, by brute force.
 double distance_of(const World& world, const std::vector<PlacedTree>& bodies, BodyPair pair) {
-  return mesh_distance(bodies[pair.a].tree.parts().triangles->mesh,
-                       bodies[pair.b].tree.parts().triangles->mesh, *world.pose_of(pair.a, pair.b));
+  return mesh_distance(parts_of(bodies[pair.a].tree).triangles->mesh,
+                       parts_of(bodies[pair.b].tree).triangles->mesh,
+                       *world.pose_of(pair.a, pair.b));
 }
 
 TEST(WorldDistance, HoldsTheLeastOfAllPairs) {

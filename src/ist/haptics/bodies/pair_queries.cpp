@@ -97,7 +97,7 @@ std::optional<QueryResult> PairQueries::find(const HandBodies& bodies, const Pla
     }
     Clock::time_point begin{};
     if (rest.has_deadline()) {
-      begin = rest.now();
+      begin = detail::budget_now();
       const nanoseconds left = rest.deadline - begin;
       part.deadline =
           begin + nanoseconds(part_of(left.count(), pair.need.nanoseconds, later.nanoseconds));
@@ -105,7 +105,7 @@ std::optional<QueryResult> PairQueries::find(const HandBodies& bodies, const Pla
     const QueryResult result = ask(pair, tool, part, contacts);
     if (rest.has_tests()) rest.tests -= std::min(rest.tests, result.sphere_tests);
     if (rest.has_deadline()) {
-      const auto spent = static_cast<double>(nanoseconds(rest.now() - begin).count());
+      const auto spent = static_cast<double>(nanoseconds(detail::budget_now() - begin).count());
       pair.need.nanoseconds = std::max(1.0, result.complete ? spent : 2 * spent);
     }
     join(all, result);

@@ -47,7 +47,7 @@ ContactReducer::ContactReducer(const SphereTree& fixed, const SphereTree& moving
       points_(options.points) {
   adder_->rule = contact_rule(scale_, rates_.lever);
   if (options.points > 0) {
-    leaf_sums_.emplace(fixed_.parts().octree, std::max<std::size_t>(options.max_leaves, 1));
+    leaf_sums_.emplace(parts_of(fixed_).octree, std::max<std::size_t>(options.max_leaves, 1));
     adder_->stream = &*leaf_sums_;
   }
   sums_.about = fixed_.origin();
@@ -93,7 +93,7 @@ std::size_t ContactReducer::bytes_for(const SphereTree& fixed, const SphereTree&
   static_cast<void>(scale_of(fixed, moving, options));  // checks them
   if (options.points == 0) return sizeof(ContactAdder);
   return sizeof(ContactAdder) +
-         LeafSums::bytes_for(fixed.parts().octree, std::max<std::size_t>(options.max_leaves, 1)) +
+         LeafSums::bytes_for(parts_of(fixed).octree, std::max<std::size_t>(options.max_leaves, 1)) +
          options.points * sizeof(Contact);
 }
 

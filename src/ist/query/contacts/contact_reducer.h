@@ -6,11 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "ist/base/access.h"
 #include "ist/base/float_environment.h"
 #include "ist/query/contacts/contact_rates.h"
 #include "ist/query/contacts/leaf_sums.h"
 #include "ist/query/manifold.h"
 #include "ist/query/relative_pose.h"
+#include "ist/tree/tree_parts.h"
 
 namespace ist::detail {
 
@@ -60,7 +62,7 @@ class ContactReducer {
   /// Returns whether leaf pairs of these trees under this policy may be reduced.
   [[nodiscard]] bool fits(const SphereTree& fixed, const SphereTree& moving,
                           SpherePolicy policy) const noexcept {
-    return &fixed.parts() == &fixed_.parts() && &moving.parts() == &moving_.parts() &&
+    return &parts_of(fixed) == &parts_of(fixed_) && &parts_of(moving) == &parts_of(moving_) &&
            policy == policy_;
   }
   /// Returns the bytes reserved.
@@ -82,5 +84,10 @@ class ContactReducer {
   ContactSums sums_;
   std::size_t count_ = 0;
 };
+
+/// Returns the reducer that fills a manifold.
+[[nodiscard]] inline ContactReducer& reducer_of(ContactManifold& manifold) noexcept {
+  return Access::reducer(manifold);
+}
 
 }  // namespace ist::detail

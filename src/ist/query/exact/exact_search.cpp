@@ -51,8 +51,8 @@ ExactSearch::ExactSearch(const SphereTree& fixed, const SphereTree& moving, cons
                          const WorkerOptions& options)
     : fixed_(fixed),
       moving_(moving),
-      fixed_clusters_(fixed.parts().triangles->clusters),
-      moving_clusters_(moving.parts().triangles->clusters),
+      fixed_clusters_(parts_of(fixed).triangles->clusters),
+      moving_clusters_(parts_of(moving).triangles->clusters),
       kernels_(kernels.clusters),
       largest_coordinate_(largest_coordinate(*moving.triangles())),
       longest_edge_(std::max(longest_edge(*fixed.triangles()), longest_edge(*moving.triangles()))),
@@ -184,8 +184,8 @@ void ExactSearch::begin_nearest(BudgetMeter& meter, Visitor& nearest) noexcept {
 
 std::size_t ExactSearch::bytes_for(const SphereTree& fixed, const SphereTree& moving,
                                    int workers) noexcept {
-  const TriangleClusters &of_fixed = fixed.parts().triangles->clusters,
-                         &of_moving = moving.parts().triangles->clusters;
+  const TriangleClusters &of_fixed = parts_of(fixed).triangles->clusters,
+                         &of_moving = parts_of(moving).triangles->clusters;
   return ClusterSearch::bytes_for(of_fixed, of_moving) + kSorted * sizeof(TrianglePair) +
          FoundMemory::bytes() + (workers == 2 ? SharedPairs::bytes_for(of_fixed, of_moving) : 0);
 }

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "ist/base/api.h"
+#include "ist/base/pose.h"
 #include "ist/query/results.h"
 #include "ist/tree/sphere_tree.h"
 
@@ -45,9 +46,6 @@ class IST_API ReferenceQuery {
   /// Throws kPolicyMissing. Cost: none with kOnTheFly; with kSaved 32 bytes a node.
   ReferenceQuery(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                  SphereSource source = SphereSource::kOnTheFly);
-  ReferenceQuery(const SphereTree&&, const SphereTree&, SpherePolicy, SphereSource = {}) = delete;
-  ReferenceQuery(const SphereTree&, const SphereTree&&, SpherePolicy, SphereSource = {}) = delete;
-  ReferenceQuery(const SphereTree&&, const SphereTree&&, SpherePolicy, SphereSource = {}) = delete;
   ~ReferenceQuery();
   ReferenceQuery(ReferenceQuery&&) noexcept;  ///< the other may then only be assigned or destroyed
   ReferenceQuery& operator=(ReferenceQuery&&) noexcept;  ///< as the constructor

@@ -13,8 +13,8 @@ namespace {
 
 Ball root_ball(const SphereTree& tree, SpherePolicy policy) noexcept {
   return is_implicit(policy)
-             ? tree.parts().nested_ball(policy, tree.depth(), 0, Eigen::Vector3d::Zero())
-             : tree.parts().saved_ball(tree.depth(), 0, 0);
+             ? parts_of(tree).nested_ball(policy, tree.depth(), 0, Eigen::Vector3d::Zero())
+             : parts_of(tree).saved_ball(tree.depth(), 0, 0);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "ist/query/results.h"
 #include "ist/query/workers/resident_worker.h"
+#include "ist/query/workers/sharing.h"
 #include "ist/query/workers/split_queue.h"
 
 namespace ist {
@@ -102,7 +103,7 @@ class SharedWork {
   [[nodiscard]] static std::chrono::nanoseconds patience(const Budget& budget) noexcept {
     constexpr std::chrono::microseconds kPatience{20};
     if (!budget.has_deadline()) return kPatience;
-    return std::min<std::chrono::nanoseconds>(kPatience, budget.deadline - budget.now());
+    return std::min<std::chrono::nanoseconds>(kPatience, budget.deadline - detail::budget_now());
   }
   void help() noexcept;
 

@@ -168,7 +168,6 @@ class IST_API World {
   BodyIndex add(const SphereTree& tree,
                 const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity(),
                 std::string name = {});
-  BodyIndex add(const SphereTree&&, const Eigen::Isometry3d& = {}, std::string = {}) = delete;
 
   /// Never looks at a pair again, and frees its query. Throws kArgumentInvalid if a body is not
   /// there, or both are the same.

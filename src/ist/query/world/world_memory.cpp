@@ -9,6 +9,7 @@
 #include "ist/base/error.h"
 #include "ist/query/contacts/contact_reducer.h"
 #include "ist/query/world/world_state.h"
+#include "ist/tree/tree_parts.h"
 
 namespace ist::detail {
 namespace {
@@ -21,7 +22,7 @@ class PairBytes {
   explicit PairBytes(const WorldOptions& options) : options_(options) {}
 
   std::uint64_t of(const SphereTree& a, const SphereTree& b) {
-    const auto [at, is_new] = known_.try_emplace({&a.parts(), &b.parts()}, 0);
+    const auto [at, is_new] = known_.try_emplace({&parts_of(a), &parts_of(b)}, 0);
     if (is_new) {
       at->second = QueryState::bytes_for(a, b, options_.query) +
                    ContactReducer::bytes_for(a, b, options_.manifold);
