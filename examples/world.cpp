@@ -13,7 +13,7 @@ Eigen::Isometry3d at(double x, double y, double z) {
 
 // The answer lists the pairs that are near each other. All other pairs are apart.
 void print_pairs_that_touch(ist::World& world) {
-  for (const ist::PairAnswer& pair : world.ask({ist::WorldQuestion::kIntersects}).pairs) {
+  for (const ist::WorldPair& pair : world.ask({ist::WorldQuestion::kIntersects}).pairs) {
     if (pair.answer != ist::Answer::kYes) continue;
     std::printf("  %s and %s touch\n", world.name(pair.bodies.a).data(),
                 world.name(pair.bodies.b).data());

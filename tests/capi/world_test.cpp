@@ -79,7 +79,7 @@ class CWorld : public ::testing::Test {
   ist_world_result result_ = sized<ist_world_result>();
 };
 
-void expect_same(const ist_world_pair& pair, const PairAnswer& expected) {
+void expect_same(const ist_world_pair& pair, const WorldPair& expected) {
   EXPECT_EQ(pair.a, expected.bodies.a);
   EXPECT_EQ(pair.b, expected.bodies.b);
 }

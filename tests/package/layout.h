@@ -24,7 +24,7 @@ consteval auto numbers_of(auto... places) {
                ist::BuildReport, ist::QueryOptions, ist::Query, ist::ReferenceQuery,
                ist::ContactManifold, ist::Contact, ist::ContactSums, ist::QueryResult,
                ist::TrianglePairsResult, ist::DistanceResult, ist::World, ist::WorldOptions,
-               ist::WorldQuestion, ist::PairAnswer, ist::WorldAnswer, ist::WorldDistance,
+               ist::WorldQuestion, ist::WorldPair, ist::WorldAnswer, ist::WorldDistance,
                ist::Budget, ist::Placement, ist::Vector6, ist::Response, ist::ToolContacts,
                ist::Simulation, ist::Tick, ist::TickRecord, ist::HandSettings,
                ist::FrictionSettings, ist::GravitySettings, ist::SnapSettings, ist::ServoCallback,

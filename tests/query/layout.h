@@ -21,7 +21,7 @@ consteval auto public_layout() {
   return layout_of<SphereTree, TriangleMesh, ReferenceQuery, Query, QueryOptions, ContactManifold,
                    Contact, ContactSums, ManifoldOptions, LeafPair, IntersectionResult, QueryResult,
                    TrianglePairsResult, DistanceResult, World, WorldOptions, WorldQuestion,
-                   PairAnswer, WorldAnswer, WorldDistance>();
+                   WorldPair, WorldAnswer, WorldDistance>();
 }
 
 /// As code compiled for AVX-512 does.

@@ -47,7 +47,7 @@ class FloatEnvironmentOfAWorld : public FloatEnvironmentOfTheCaller {
     });
   }
 
-  static void say(const PairAnswer& pair, Record& record) {
+  static void say(const WorldPair& pair, Record& record) {
     record.add(pair.bodies.a);
     record.add(pair.bodies.b);
     record.add(pair.status);
@@ -67,7 +67,7 @@ class FloatEnvironmentOfAWorld : public FloatEnvironmentOfTheCaller {
     record.add(answer.complete);
     record.add(answer.near_pairs);
     record.add(answer.sphere_tests);
-    for (const PairAnswer& pair : answer.pairs) say(pair, record);
+    for (const WorldPair& pair : answer.pairs) say(pair, record);
   }
 
   const SphereTree large_ = tree(meshes_.a), small_ = tree(meshes_.b);
@@ -124,7 +124,7 @@ TEST_P(FloatEnvironmentOfAWorld, ChangesNoContact) {
   changes_no_world("World::ask for contacts", 400, [](World& world, Record& record) {
     const WorldAnswer answer = world.ask({WorldQuestion::kContacts});
     say(answer, record);
-    for (const PairAnswer& pair : answer.pairs) {
+    for (const WorldPair& pair : answer.pairs) {
       for (const Contact& contact : pair.manifold->points()) record.add(contact);
       record.add(pair.manifold->sums().spring.torque);
     }
@@ -168,7 +168,7 @@ TEST_P(FloatEnvironmentOfAWorld, ChangesNoLeastDistance) {
       record.add(least.nearest->a);
       record.add(least.nearest->b);
       record.add(least.sphere_tests);
-      for (const PairAnswer& pair : least.pairs) say(pair, record);
+      for (const WorldPair& pair : least.pairs) say(pair, record);
     }
   });
 }

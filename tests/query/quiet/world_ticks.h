@@ -48,7 +48,7 @@ inline std::uint64_t ask_everything(World& world, std::vector<LeafPair>& leaves,
           WorldQuestion{.kind = WorldQuestion::kLeafPairs, .leaf_pairs = leaves},
           WorldQuestion{.kind = WorldQuestion::kTrianglePairs, .triangle_pairs = triangles},
           WorldQuestion{WorldQuestion::kDistance, 0.01}}) {
-      for (const PairAnswer& pair : world.ask(question, budget).pairs) {
+      for (const WorldPair& pair : world.ask(question, budget).pairs) {
         found += pair.sphere_tests + pair.found;
       }
     }

@@ -36,7 +36,7 @@ TEST_F(WorldBudget, OfTestsIsOneForAllPairs) {
     EXPECT_GE(answer.sphere_tests, last);
     last = answer.sphere_tests;
     std::uint64_t spent = 0;
-    for (const PairAnswer& pair : answer.pairs) {
+    for (const WorldPair& pair : answer.pairs) {
       // As a fresh query with what is left.
       Query fresh(world_.query(pair.bodies.a, pair.bodies.b)->fixed(),
                   world_.query(pair.bodies.a, pair.bodies.b)->moving(), small_world().query);
@@ -60,7 +60,7 @@ TEST_F(WorldBudget, OfTimeEndsTheWholeCall) {
     const auto answer = world_.ask(leaf_pairs_in(leaf_pairs_), LateClock::budget_of(looks));
     ASSERT_EQ(answer.pairs.size(), 4u);
     bool ended = false;
-    for (const PairAnswer& pair : answer.pairs) {
+    for (const WorldPair& pair : answer.pairs) {
       EXPECT_EQ(pair.status, QueryStatus::kDone);
       EXPECT_FALSE(ended && pair.complete);  // nothing goes on behind the end
       ended = ended || !pair.complete;
@@ -72,7 +72,7 @@ TEST_F(WorldBudget, OfTimeEndsTheWholeCall) {
     // Once late, the clock is read once for each pair that is left, and a little by the last query.
     EXPECT_LE(LateClock::looks, looks + 8);
     const auto touch = world_.ask(kIntersects, LateClock::budget_of(0));
-    for (const PairAnswer& pair : touch.pairs) {
+    for (const WorldPair& pair : touch.pairs) {
       EXPECT_EQ(pair.answer, ist::Answer::kUnknown);
       EXPECT_FALSE(pair.complete);
     }
@@ -88,7 +88,7 @@ TEST_F(WorldBudget, OfTimeEndsTheWholeCall) {
 // A span that is too short holds the first of the first pairs.
 TEST_F(WorldBudget, AShortSpanHoldsTheFirstPairs) {
   const auto whole = world_.ask(leaf_pairs_in(leaf_pairs_));
-  const std::vector<PairAnswer> all(whole.pairs.begin(), whole.pairs.end());
+  const std::vector<WorldPair> all(whole.pairs.begin(), whole.pairs.end());
   const std::vector<LeafPair> expected = leaf_pairs_;
   const std::size_t first = all[0].written;
   ASSERT_GT(first, 10u);

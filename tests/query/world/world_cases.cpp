@@ -33,7 +33,7 @@ WorldAnswers answers_of(World& world) {
   std::vector<LeafPair> leaves(1 << 18);
   std::vector<TrianglePair> triangles(1 << 18);
   WorldAnswers all;
-  for (const PairAnswer& pair : world.ask(kIntersects).pairs) {
+  for (const WorldPair& pair : world.ask(kIntersects).pairs) {
     all.pairs.push_back({.bodies = pair.bodies,
                          .status = pair.status,
                          .lower = pair.roots.lower,
@@ -44,15 +44,15 @@ WorldAnswers answers_of(World& world) {
     const WorldAnswer answer = world.ask(question);
     for (std::size_t k = 0; k < answer.pairs.size(); ++k) take(answer.pairs[k], all.pairs[k]);
   };
-  of_each(leaf_pairs_in(leaves), [&](const PairAnswer& pair, WorldAnswers::OfPair& of_pair) {
+  of_each(leaf_pairs_in(leaves), [&](const WorldPair& pair, WorldAnswers::OfPair& of_pair) {
     const auto first = leaves.begin() + static_cast<std::ptrdiff_t>(pair.first);
     of_pair.leaf_pairs.assign(first, first + static_cast<std::ptrdiff_t>(pair.written));
   });
-  of_each(triangle_pairs_in(triangles), [&](const PairAnswer& pair, WorldAnswers::OfPair& of_pair) {
+  of_each(triangle_pairs_in(triangles), [&](const WorldPair& pair, WorldAnswers::OfPair& of_pair) {
     const auto first = triangles.begin() + static_cast<std::ptrdiff_t>(pair.first);
     of_pair.triangles.assign(first, first + static_cast<std::ptrdiff_t>(pair.written));
   });
-  of_each(kContacts, [](const PairAnswer& pair, WorldAnswers::OfPair& of_pair) {
+  of_each(kContacts, [](const WorldPair& pair, WorldAnswers::OfPair& of_pair) {
     if (pair.manifold == nullptr) return;
     of_pair.weight = pair.manifold->sums().weight;
     of_pair.contacts = pair.manifold->points().size();

@@ -59,8 +59,8 @@ inline constexpr WorldQuestion kContacts{WorldQuestion::kContacts};
 }
 
 /// The answer of a pair, or null where it is not listed.
-[[nodiscard]] inline const PairAnswer* find(const WorldAnswer& answer, BodyPair bodies) {
-  for (const PairAnswer& pair : answer.pairs) {
+[[nodiscard]] inline const WorldPair* find(const WorldAnswer& answer, BodyPair bodies) {
+  for (const WorldPair& pair : answer.pairs) {
     if (pair.bodies == bodies) return &pair;
   }
   return nullptr;

@@ -50,7 +50,7 @@ TEST(WorldDistance, HoldsTheLeastOfAllPairs) {
       EXPECT_EQ(found.complete, found.distance.upper - found.distance.lower <= tolerance);
       ASSERT_TRUE(found.nearest);
       EXPECT_LE(distance_of(world, bodies, *found.nearest), found.distance.upper + kRounding);
-      for (const PairAnswer& pair : found.pairs) {
+      for (const WorldPair& pair : found.pairs) {
         EXPECT_LE(outside(pair.distance, distance_of(world, bodies, pair.bodies)), kRounding);
         EXPECT_LE(outside(pair.roots, distance_of(world, bodies, pair.bodies)), kRounding);
       }
@@ -83,7 +83,7 @@ TEST(WorldDistance, CountsPairsThatWereNotPrepared) {
     const WorldDistance found = world.distance(1e-3);
     EXPECT_LE(outside(found.distance, truth), kRounding);
     wide += found.complete ? 0 : 1;
-    for (const PairAnswer& pair : found.pairs) {
+    for (const WorldPair& pair : found.pairs) {
       const bool prepared = world.query(pair.bodies.a, pair.bodies.b) != nullptr;
       EXPECT_EQ(pair.status, prepared ? QueryStatus::kDone : QueryStatus::kNotPrepared);
       if (prepared) continue;

@@ -29,7 +29,7 @@ void expect_answer_of_a_query(World& world, const std::vector<PlacedTree>& bodie
   ContactManifold manifold(fixed, moving, fresh.policy(), options.manifold);
   std::vector<LeafPair> out(1 << 18);
   const auto intersections = world.ask(kIntersects);
-  const PairAnswer* listed = find(intersections, pair);
+  const WorldPair* listed = find(intersections, pair);
   const Answer truth =
       meeting_pairs(fixed, moving, *pose).empty() ? ist::Answer::kNo : ist::Answer::kYes;
   meeting += truth == ist::Answer::kYes ? 1 : 0;
@@ -44,7 +44,7 @@ void expect_answer_of_a_query(World& world, const std::vector<PlacedTree>& bodie
   EXPECT_EQ(listed->answer, truth);
   const auto leaves = world.ask(leaf_pairs_in(out));
   FoundPairs expected = ask(fresh, *pose);
-  const PairAnswer& of_leaves = *find(leaves, pair);
+  const WorldPair& of_leaves = *find(leaves, pair);
   if (options.query.front_pairs > 0) {  // how much was kept shows there
     expected.result.sphere_tests = of_leaves.sphere_tests;
   }
@@ -60,7 +60,7 @@ void expect_answer_of_a_query(World& world, const std::vector<PlacedTree>& bodie
                     {first, first + static_cast<std::ptrdiff_t>(of_leaves.written)}},
                    expected));
   const auto felt = world.ask(kContacts);
-  const PairAnswer& of_contacts = *find(felt, pair);
+  const WorldPair& of_contacts = *find(felt, pair);
   EXPECT_EQ(of_contacts.found, fresh.contacts(*pose, manifold).leaf_pairs);
   ASSERT_NE(of_contacts.manifold, nullptr);
   EXPECT_EQ(of_contacts.manifold, world.manifold(pair.b, pair.a));
@@ -124,8 +124,8 @@ TEST(World, ListsPairsInOrder) {
   EXPECT_EQ(near.near_pairs, near.pairs.size());
   EXPECT_TRUE(
       std::is_sorted(near.pairs.begin(), near.pairs.end(),
-                     [](const PairAnswer& x, const PairAnswer& y) { return x.bodies < y.bodies; }));
-  for (const PairAnswer& pair : near.pairs) EXPECT_LT(pair.bodies.a, pair.bodies.b);
+                     [](const WorldPair& x, const WorldPair& y) { return x.bodies < y.bodies; }));
+  for (const WorldPair& pair : near.pairs) EXPECT_LT(pair.bodies.a, pair.bodies.b);
 }
 
 // A world that has moved about answers as one that was just made, in the same order.
@@ -226,7 +226,7 @@ TEST(World, GivesTheStatusOfAPoseToItsPairsAlone) {
   for (const auto& pair : after.pairs) {
     EXPECT_EQ(pair.status, is_of_3(pair.bodies) ? QueryStatus::kInvalidPose : QueryStatus::kDone);
   }
-  for (const PairAnswer& pair : world.ask(kIntersects).pairs) {
+  for (const WorldPair& pair : world.ask(kIntersects).pairs) {
     EXPECT_EQ(pair.answer == ist::Answer::kUnknown, is_of_3(pair.bodies));
   }
   for (const auto& pair : world.ask(kContacts).pairs) {
@@ -241,7 +241,7 @@ TEST(World, GivesTheStatusOfAPoseToItsPairsAlone) {
   world.set_pose(6, bad);
   const auto near = world.ask(kNear);
   EXPECT_EQ(std::count_if(near.pairs.begin(), near.pairs.end(),
-                          [](const PairAnswer& pair) { return pair.status != QueryStatus::kDone; }),
+                          [](const WorldPair& pair) { return pair.status != QueryStatus::kDone; }),
             13);
   world.set_pose(6, bodies[6].pose);
   EXPECT_EQ(world.set_pose(3, bodies[3].pose), QueryStatus::kDone);
@@ -322,7 +322,7 @@ TEST(World, TellsOfPairsThatWereNotPrepared) {
   EXPECT_NE(world.manifold(1, 0), nullptr);
   // The pairs that are near can be prepared as they are listed.
   std::vector<BodyPair> wanted;
-  for (const PairAnswer& pair : world.ask(kNear).pairs) wanted.push_back(pair.bodies);
+  for (const WorldPair& pair : world.ask(kNear).pairs) wanted.push_back(pair.bodies);
   world.prepare(wanted);
   EXPECT_TRUE(world.ask(kIntersects).complete);
   EXPECT_EQ(world.ask(kIntersects).pairs[1].answer, ist::Answer::kYes);

@@ -20,7 +20,7 @@ ist_status status_of_pair(QueryStatus status) {
   }
 }
 
-ist_world_pair pair_of(const PairAnswer& pair) {
+ist_world_pair pair_of(const WorldPair& pair) {
   ist_world_pair out{};
   out.a = pair.bodies.a;
   out.b = pair.bodies.b;

@@ -12,8 +12,8 @@ namespace ist {
 /// A pair of bodies at their poses, for the world's own use.
 struct PairAtPose {
   BodyPair bodies;
-  QueryStatus status;      ///< as PairAnswer has it before the pair is asked
-  DistanceInterval roots;  ///< as PairAnswer has it
+  QueryStatus status;      ///< as WorldPair has it before the pair is asked
+  DistanceInterval roots;  ///< as WorldPair has it
   bool overlap;            ///< the roots are no farther apart than they need be to be near
   std::uint32_t place;     ///< of its query; PairTable::kNoQuery without one
   BodyPose pose;           ///< of the later body in the first one's coordinates

@@ -74,7 +74,7 @@ struct WorldQuestion {
 
 /// The answer of a pair of bodies that are near each other; lengths in mesh units. A member that
 /// names kinds of questions keeps its default after the others.
-struct PairAnswer {
+struct WorldPair {
   BodyPair bodies{};  ///< a < b
   /// kDone; kNotPrepared for a pair without a query, or so far apart that no double holds the way
   /// from one to the other; kInvalidPose if a body has no valid pose; else as the query gives it.
@@ -110,7 +110,7 @@ struct WorldAnswer {
   bool truncated = false;          ///< more pairs are near than fit: the first of them are listed
   std::uint64_t near_pairs = 0;    ///< all pairs that are near, listed or not
   std::uint64_t sphere_tests = 0;  ///< of all pairs, as Budget::tests counts them
-  std::span<const PairAnswer> pairs = {};  ///< until the next ask() of the world
+  std::span<const WorldPair> pairs = {};  ///< until the next ask() of the world
 };
 
 /// The least distance between any two bodies of a world that are not ignored.
@@ -126,7 +126,7 @@ struct WorldDistance {
   std::uint64_t sphere_tests = 0;                  ///< of all pairs, as Budget::tests counts them
   /// The pairs that may be nearest by their roots, in the order of BodyPair, until the next call;
   /// those that need not be asked have the interval of their roots.
-  std::span<const PairAnswer> pairs = {};
+  std::span<const WorldPair> pairs = {};
 };
 
 /// Some bodies, each at a pose, and the queries of their pairs. A broad phase over the roots'

@@ -10,8 +10,8 @@ using detail::Use;
 using detail::WorldState;
 
 // Returns the answer of a pair before its query is asked: the roots alone tell it.
-PairAnswer by_roots(const PairAtPose& at) noexcept {
-  PairAnswer pair;
+WorldPair by_roots(const PairAtPose& at) noexcept {
+  WorldPair pair;
   pair.bodies = at.bodies;
   pair.status = at.status;
   pair.roots = pair.distance = at.roots;
@@ -19,7 +19,7 @@ PairAnswer by_roots(const PairAtPose& at) noexcept {
 }
 
 // Counts the test of the roots of a pair that a question or its budget left out.
-void leave(WorldQuestion::Kind kind, PairAnswer& pair) noexcept {
+void leave(WorldQuestion::Kind kind, WorldPair& pair) noexcept {
   if (pair.status == QueryStatus::kInvalidPose) return;
   pair.sphere_tests = 1;
   if (kind == WorldQuestion::kDistance) pair.narrowest = pair.roots.upper - pair.roots.lower;
@@ -27,12 +27,12 @@ void leave(WorldQuestion::Kind kind, PairAnswer& pair) noexcept {
 
 // Takes the members that the results of all verbs have.
 template <class Result>
-void take(const Result& result, PairAnswer& pair) noexcept {
+void take(const Result& result, WorldPair& pair) noexcept {
   pair.status = result.status;
   pair.complete = result.complete;
   pair.sphere_tests = result.sphere_tests;
 }
-void take_leaf_pairs(const QueryResult& result, PairAnswer& pair) noexcept {
+void take_leaf_pairs(const QueryResult& result, WorldPair& pair) noexcept {
   take(result, pair);
   pair.truncated = result.truncated;
   pair.way = result.found;
@@ -42,7 +42,7 @@ void take_leaf_pairs(const QueryResult& result, PairAnswer& pair) noexcept {
   pair.pad = result.pad;
   pair.found = result.leaf_pairs;
 }
-void take_distance(const DistanceResult& result, PairAnswer& pair) noexcept {
+void take_distance(const DistanceResult& result, WorldPair& pair) noexcept {
   take(result, pair);
   if (result.status == QueryStatus::kDone) pair.distance = result.distance;
   pair.narrowest = result.narrowest;
@@ -50,7 +50,7 @@ void take_distance(const DistanceResult& result, PairAnswer& pair) noexcept {
 
 // Asks the query of a pair. The span of the question is free from `pair.first` on.
 void ask_query(const WorldQuestion& question, Query& query, ContactManifold& manifold,
-               const Eigen::Isometry3d& pose, const Budget& budget, PairAnswer& pair) noexcept {
+               const Eigen::Isometry3d& pose, const Budget& budget, WorldPair& pair) noexcept {
   switch (question.kind) {
     case WorldQuestion::kNear:
       break;
@@ -111,14 +111,14 @@ WorldAnswer World::ask(const WorldQuestion& question, const Budget& budget) noex
   if (!s.ready) return {.status = QueryStatus::kNotPrepared, .complete = false};
   s.find_near();
   const NearSet& near = s.answers.near;
-  const std::span<PairAnswer> pairs = std::span(s.answers.pairs).first(near.size());
+  const std::span<WorldPair> pairs = std::span(s.answers.pairs).first(near.size());
   const bool truncated = near.count() > near.size();
   WorldAnswer all{
       .complete = !truncated, .truncated = truncated, .near_pairs = near.count(), .pairs = pairs};
   std::uint64_t written = 0;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const PairAtPose& at = near[k];
-    PairAnswer& pair = pairs[k];
+    WorldPair& pair = pairs[k];
     pair = by_roots(at);
     if (question.kind == WorldQuestion::kNear) {
       ++all.sphere_tests;
@@ -156,19 +156,19 @@ WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
   double lower = s.find_candidates();  // of all pairs that are done with
   double upper = kLargestDistance;
   const std::vector<WorldState::Candidate>& candidates = s.answers.candidates;
-  const std::span<PairAnswer> pairs = std::span(s.answers.nearest).first(candidates.size());
+  const std::span<WorldPair> pairs = std::span(s.answers.nearest).first(candidates.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     pairs[k] = by_roots(s.look(candidates[k].bodies));
     leave(WorldQuestion::kDistance, pairs[k]);
     upper = std::min(upper, pairs[k].roots.upper);
   }
-  std::sort(pairs.begin(), pairs.end(), [](const PairAnswer& a, const PairAnswer& b) {
+  std::sort(pairs.begin(), pairs.end(), [](const WorldPair& a, const WorldPair& b) {
     return a.roots.lower < b.roots.lower || (a.roots.lower == b.roots.lower && a.bodies < b.bodies);
   });
 
   const double width = tolerance > 0 ? tolerance : 0;
   std::uint64_t spent = 0;
-  for (PairAnswer& pair : pairs) {
+  for (WorldPair& pair : pairs) {
     // No later pair is nearer than the roots of this one.
     const bool enough =
         pair.roots.lower > upper || upper - std::min(lower, pair.roots.lower) <= width;
@@ -187,7 +187,7 @@ WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
   WorldDistance all;
   all.distance = {std::min(lower, upper), upper};
   double least = kLargestDistance;
-  for (const PairAnswer& pair : pairs) {
+  for (const WorldPair& pair : pairs) {
     all.sphere_tests += pair.sphere_tests;
     const double end = pair.distance.upper;
     if (all.nearest && !(end < least || (end == least && pair.bodies < *all.nearest))) continue;
@@ -198,7 +198,7 @@ WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
   if (lost) all.status = QueryStatus::kInvalidPose;
   all.complete = !lost && upper - all.distance.lower <= width;
   std::sort(pairs.begin(), pairs.end(),
-            [](const PairAnswer& a, const PairAnswer& b) { return a.bodies < b.bodies; });
+            [](const WorldPair& a, const WorldPair& b) { return a.bodies < b.bodies; });
   all.pairs = pairs;
   return all;
 }

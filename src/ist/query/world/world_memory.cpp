@@ -39,7 +39,7 @@ class PairBytes {
 
 std::uint64_t WorldState::Answers::bytes_for(std::size_t room) noexcept {
   return std::uint64_t{room} *
-         (sizeof(PairAtPose) + 16 + sizeof(Candidate) + 2 * sizeof(PairAnswer));
+         (sizeof(PairAtPose) + 16 + sizeof(Candidate) + 2 * sizeof(WorldPair));
 }
 
 BodyPair WorldState::checked(BodyIndex a, BodyIndex b) const {

@@ -49,7 +49,7 @@ struct WorldState {
     std::size_t room = 0;
     NearSet near;
     std::vector<Candidate> candidates;
-    std::vector<PairAnswer> pairs, nearest;  // of ask(), of distance()
+    std::vector<WorldPair> pairs, nearest;  // of ask(), of distance()
   };
 
   explicit WorldState(const WorldOptions& options);
