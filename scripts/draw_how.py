@@ -4,7 +4,7 @@
     scripts/draw_how.py PATH/TO/ist PATH/TO/libist.so FOLDER             draws, and prints the sentences
     scripts/draw_how.py PATH/TO/ist PATH/TO/libist.so FOLDER --check     draws, and fails where the page has another sentence
 
-All that is drawn comes from the command, but for two things: the Python package asks the library for the front that a query
+All that is drawn comes from the command, but for two things: the Python package asks the library for the pair cache that a query
 carries, and the nodes of triangle clusters, which nothing public has, follow from the library's rule. The script computes the
 steps of a query itself, compares them with the command's counts, and ends where they differ. Needs Debian's
 python3-matplotlib, so run it with the system's python3.
@@ -20,13 +20,13 @@ PAGE = ROOT / "docs/how-it-works.md"
 
 def pictures(command, ist, folder):
     """Draws each picture; yields its name and its sentence."""
-    from pictures.how import carried_front, clusters, frontiers, intervals, leaf_bounds, octree_levels, table_balls
+    from pictures.how import clusters, frontiers, intervals, leaf_bounds, octree_levels, pair_cache, table_balls
 
     yield "octree", octree_levels.draw(command, folder / "octree.png")
     yield "table", table_balls.draw(command, folder / "table.svg")
     yield "bounds", leaf_bounds.draw(command, folder / "bounds.svg")
     yield "frontiers", frontiers.draw(command, folder / "frontiers.png")
-    yield "front", carried_front.draw(command, folder / "front.svg", ist)
+    yield "pair_cache", pair_cache.draw(command, folder / "pair_cache.svg", ist)
     yield "clusters", clusters.draw(command, folder / "clusters.png")
     yield "intervals", intervals.draw(command, folder / "intervals.svg")
 

@@ -6,7 +6,7 @@
 
 #include "simd/contact_step.h"
 #include "simd/exact/cluster_step.h"
-#include "simd/front_step.h"
+#include "simd/pair_cache_step.h"
 #include "simd/step.h"
 
 namespace ist {
@@ -18,10 +18,10 @@ struct Kernels {
   WriteLeafPairsFunction write_leaf_pairs;
   AdvanceContactsFunction advance_contacts;
   AddContactsFunction add_contacts;
-  AdvanceFrontFunction advance_front;
-  TurnFrontFunction turn_front;
-  SelectFrontFunction select_front;
-  AddFrontFunction add_front;
+  AdvanceCacheFunction advance_cache;
+  TurnCacheFunction turn_cache;
+  SelectCacheFunction select_cache;
+  AddCacheFunction add_cache;
   ClusterKernels clusters;
 };
 

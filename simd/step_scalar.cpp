@@ -1,7 +1,7 @@
 #include "simd/contact_lanes.h"
 #include "simd/dispatch.h"
-#include "simd/front_step.h"
 #include "simd/lanes.h"
+#include "simd/pair_cache_step.h"
 #include "simd/step.h"
 
 namespace ist {
@@ -64,9 +64,9 @@ struct ContactRows {
 };
 
 // The overlapping pairs are kept.
-struct FrontRowsOut {
+struct CacheRowsOut {
   const SearchStep& step;
-  FrontLanes& out;
+  CacheLanes& out;
   bool slabs = step.fixed.slabs != nullptr;
   const FixedGroup* group = nullptr;
 
@@ -165,11 +165,11 @@ Advanced advance_contacts_scalar(const SearchStep& step, const SearchPose& pose,
                       bounds);
 }
 
-Advanced advance_front_scalar(const SearchStep& step, const SearchPose& pose, const Frontier& in,
-                              SearchCursor& cursor, FrontLanes& out, SearchScratch& scratch,
+Advanced advance_cache_scalar(const SearchStep& step, const SearchPose& pose, const Frontier& in,
+                              SearchCursor& cursor, CacheLanes& out, SearchScratch& scratch,
                               std::uint64_t most) {
   DistanceBounds none;
-  return advance_rows(step, pose, in, cursor, FrontRowsOut{step, out}, scratch, most,
+  return advance_rows(step, pose, in, cursor, CacheRowsOut{step, out}, scratch, most,
                       Measured::kNothing, none);
 }
 
@@ -185,10 +185,10 @@ constinit const Kernels kScalarKernels{"scalar",
                                        write_leaf_pairs_scalar,
                                        advance_contacts_scalar,
                                        add_contacts_scalar,
-                                       advance_front_scalar,
-                                       turn_front_scalar,
-                                       select_front_scalar,
-                                       add_front_scalar,
+                                       advance_cache_scalar,
+                                       turn_cache_scalar,
+                                       select_cache_scalar,
+                                       add_cache_scalar,
                                        {}};
 
 }  // namespace ist

@@ -8,7 +8,7 @@
 #include "simd/advance-inl.h"
 #include "simd/contact_rows-inl.h"
 #include "simd/contact_sums-inl.h"
-#include "simd/front-inl.h"
+#include "simd/pair_cache-inl.h"
 #include "simd/pair_rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -70,34 +70,34 @@ Advanced AdvanceContacts(const SearchStep& step, const SearchPose& pose, const F
   return advanced;
 }
 
-// Vector twins of the scalar forms in simd/front_step.h.
-Advanced AdvanceFront(const SearchStep& step, const SearchPose& pose, const Frontier& in,
-                      SearchCursor& cursor, FrontLanes& out, SearchScratch& scratch,
+// Vector twins of the scalar forms in simd/pair_cache_step.h.
+Advanced AdvanceCache(const SearchStep& step, const SearchPose& pose, const Frontier& in,
+                      SearchCursor& cursor, CacheLanes& out, SearchScratch& scratch,
                       std::uint64_t most) {
   DistanceBounds none;
   const std::size_t before = out.pair_count;
   const Advanced advanced = WithSlabs(step, [&]<bool kSlabs>() {
-    using Rows = FrontPairs<kSlabs>;
+    using Rows = CachePairs<kSlabs>;
     return Advancer<kSlabs, Rows>(step, pose, in, Rows(step, out), scratch, most, none).Run(cursor);
   });
   UnpackMovingNormals(step, before, out);
   return advanced;
 }
 
-void TurnFront(const FrontLanes& front, const SearchStep& step, const SearchPose& pose,
-               bool surfaces, FrontRows& rows) {
-  WithSlabs(step, [&]<bool kSlabs>() { TurnRows<kSlabs>(front, step, pose, surfaces, rows); });
+void TurnCache(const CacheLanes& cache, const SearchStep& step, const SearchPose& pose,
+               bool surfaces, CacheRows& rows) {
+  WithSlabs(step, [&]<bool kSlabs>() { TurnRows<kSlabs>(cache, step, pose, surfaces, rows); });
 }
 
-std::size_t SelectFront(const FrontLanes& front, const SearchStep& step, const FrontRows& rows,
+std::size_t SelectCache(const CacheLanes& cache, const SearchStep& step, const CacheRows& rows,
                         std::size_t begin, std::size_t end, std::uint32_t* out) {
   return WithSlabs(
-      step, [&]<bool kSlabs>() { return SelectPairs<kSlabs>(front, rows, begin, end, out); });
+      step, [&]<bool kSlabs>() { return SelectPairs<kSlabs>(cache, rows, begin, end, out); });
 }
 
-void AddFront(const FrontLanes& front, const SearchStep& step, const FrontRows& rows,
+void AddCache(const CacheLanes& cache, const SearchStep& step, const CacheRows& rows,
               std::size_t begin, std::size_t end, ContactAdder& out) {
-  WithSlabs(step, [&]<bool kSlabs>() { AddPairs<kSlabs>(front, rows, begin, end, out); });
+  WithSlabs(step, [&]<bool kSlabs>() { AddPairs<kSlabs>(cache, rows, begin, end, out); });
 }
 
 // Vector twin of ist::write_leaf_pairs_scalar.
@@ -150,8 +150,8 @@ struct Compiled {
     HWY_##TARGET, {                                                               \
       NAME, HWY_CHOOSE_##TARGET(Advance), HWY_CHOOSE_##TARGET(WriteLeafPairs),    \
           HWY_CHOOSE_##TARGET(AdvanceContacts), HWY_CHOOSE_##TARGET(AddContacts), \
-          HWY_CHOOSE_##TARGET(AdvanceFront), HWY_CHOOSE_##TARGET(TurnFront),      \
-          HWY_CHOOSE_##TARGET(SelectFront), HWY_CHOOSE_##TARGET(AddFront), {}     \
+          HWY_CHOOSE_##TARGET(AdvanceCache), HWY_CHOOSE_##TARGET(TurnCache),      \
+          HWY_CHOOSE_##TARGET(SelectCache), HWY_CHOOSE_##TARGET(AddCache), {}     \
     }                                                                             \
   }
 

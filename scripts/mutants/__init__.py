@@ -1,6 +1,6 @@
 """Ways to break the code, each of which some test must notice. mutate.py runs them."""
 
-from . import bodies, fronts, loop, meshes, page, project, promises, query, sweeps, tools, tree, triangles, worlds
+from . import bodies, loop, meshes, page, pair_cache, project, promises, query, sweeps, tools, tree, triangles, worlds
 
-MUTANTS = [mutant for room in (query, fronts, tree, meshes, triangles, loop, bodies, tools, promises, worlds, sweeps, page, project)
+MUTANTS = [mutant for room in (query, pair_cache, tree, meshes, triangles, loop, bodies, tools, promises, worlds, sweeps, page, project)
            for mutant in room.MUTANTS]

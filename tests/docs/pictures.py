@@ -17,7 +17,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 # The script, its arguments behind the command, and the pictures of docs/pictures that it draws.
 SCRIPTS = {
     "how": ("draw_how.py", ["{library}", "{folder}", "--check"],
-            ["octree.png", "table.svg", "bounds.svg", "frontiers.png", "front.svg", "clusters.png", "intervals.svg"]),
+            ["octree.png", "table.svg", "bounds.svg", "frontiers.png", "pair_cache.svg", "clusters.png", "intervals.svg"]),
     "tree": ("draw_tree.py", ["{folder}/tree.png"], ["tree.png"]),
     "bite": ("draw_bite.py", ["{folder}/bite.png"], ["bite.png"]),
     "closing": ("draw_closing.py", ["{folder}/closing.svg"], []),  # no page shows it

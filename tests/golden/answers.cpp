@@ -106,7 +106,7 @@ std::uint64_t hash_leaf_pairs(const std::string& target) {
   return hasher.value();
 }
 
-// Sixteen ticks a step. How many tests a kept front takes is not promised.
+// Sixteen ticks a step. How many tests a kept cache takes is not promised.
 std::uint64_t hash_coherent_ticks(const std::string& target) {
   QueryOptions options = options_of(SpherePolicy::kSlab, target);
   options.front_pairs = 1 << 14;

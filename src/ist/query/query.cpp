@@ -186,7 +186,7 @@ void Query::forget() noexcept {
   const detail::Use use(s);
   if (!use) return;
   if (s.exact) s.exact->forget();
-  if (s.coherent) s.coherent->forget();
+  if (s.cached) s.cached->forget();
 }
 
 bool Query::has_triangles() const noexcept { return state_->exact.has_value(); }

@@ -175,7 +175,7 @@ class IST_API Query {
   [[nodiscard]] InsideResult inside(const Eigen::Isometry3d& pose);
 
   /// Forgets the earlier questions: the triangles that met or were nearest last, and the pairs of a
-  /// front. The next answers are those of a new query. Does nothing while another thread is in the
+  /// cache. The next answers are those of a new query. Does nothing while another thread is in the
   /// query.
   void forget() noexcept;
 

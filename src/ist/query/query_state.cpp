@@ -25,7 +25,7 @@ const SphereTree& comparable(const SphereTree& fixed, const SphereTree& moving) 
   throw Error(ErrorCode::kArgumentInvalid, "query: " + reason);
 }
 
-CoherentOptions coherent_options(const QueryOptions& options) {
+CacheOptions coherent_options(const QueryOptions& options) {
   return {options.frontier_pairs, options.front_pairs, options.workers, options.period};
 }
 
@@ -46,7 +46,7 @@ std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const Sp
                                             : Search::bytes_for(plan, options.frontier_pairs)) +
                       (kWindow + kLeafPairSpare) * sizeof(LeafPair);
   if (options.front_pairs > 0) {
-    bytes += CoherentSearch::bytes_for(plan, coherent_options(options));
+    bytes += CachedSearch::bytes_for(plan, coherent_options(options));
   }
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
     bytes += ExactSearch::bytes_for(fixed, moving, options.workers);
@@ -86,7 +86,7 @@ QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tr
     searches.emplace<Search>(plan, kernels, options.frontier_pairs);
   }
   if (options.front_pairs > 0) {
-    coherent.emplace(fixed, moving, policy, plan, kernels, coherent_options(options));
+    cached.emplace(fixed, moving, policy, plan, kernels, coherent_options(options));
   }
   window.resize(kWindow + kLeafPairSpare);
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
@@ -162,10 +162,10 @@ DistanceInterval QueryState::search(const Approach& bodies, const SearchPose& po
                                     const Budget& budget, Measured measured,
                                     typename Lister::Sink& sink, QueryResult& result) noexcept {
   set_pad(2 * pad_of(pose) - bodies.margin, result);
-  const bool keeps = coherent && !budget.has_tests();
-  CoherentSearch::FrontAt found;
-  if (keeps) found = coherent->find(bodies.relative, bodies.margin, budget);
-  if (found.front != nullptr) return answer_from(found, bodies, pose, budget, sink, result);
+  const bool keeps = cached && !budget.has_tests();
+  CachedSearch::CacheAt found;
+  if (keeps) found = cached->find(bodies.relative, bodies.margin, budget);
+  if (found.cache != nullptr) return answer_from(found, bodies, pose, budget, sink, result);
 
   // The test of the roots counts against a limit of tests.
   const BudgetMeter meter(budget, budget.has_tests() ? result.sphere_tests : 0);
@@ -176,7 +176,7 @@ DistanceInterval QueryState::search(const Approach& bodies, const SearchPose& po
   result.level = static_cast<int>(plan.steps().size() - end.steps);
   result.complete = result.level == 0;
   if (keeps && result.complete) {
-    coherent->prepare(bodies.relative, bodies.margin, result.leaf_pairs, end.tests, budget);
+    cached->prepare(bodies.relative, bodies.margin, result.leaf_pairs, end.tests, budget);
   }
   return narrowed(bodies, end.bounds, measured, result.complete);
 }
@@ -194,14 +194,13 @@ SharedSearch::End QueryState::search_afresh(const SearchPose& pose, const Budget
 }
 
 template <class Sink>
-DistanceInterval QueryState::answer_from(const CoherentSearch::FrontAt& found,
-                                         const Approach& bodies, const SearchPose& pose,
-                                         const Budget& budget, Sink& sink,
+DistanceInterval QueryState::answer_from(const CachedSearch::CacheAt& found, const Approach& bodies,
+                                         const SearchPose& pose, const Budget& budget, Sink& sink,
                                          QueryResult& result) noexcept {
-  const Front& front = *found.front;
-  result.found = found.tests > 0 ? Found::kFresh : front.empty() ? Found::kClear : Found::kKept;
-  result.sphere_tests += found.tests + front.lanes.pair_count;
-  result.complete = coherent->pass_on(front, pose, budget, sink);
+  const PairCache& cache = *found.cache;
+  result.found = found.tests > 0 ? Found::kFresh : cache.empty() ? Found::kClear : Found::kKept;
+  result.sphere_tests += found.tests + cache.lanes.pair_count;
+  result.complete = cached->pass_on(cache, pose, budget, sink);
   if (!result.complete) {
     if (!sink.stopped()) sink.clear();  // the pairs that were passed on are not repeatable
     result.level = static_cast<int>(plan.steps().size());
@@ -210,12 +209,12 @@ DistanceInterval QueryState::answer_from(const CoherentSearch::FrontAt& found,
   result.truncated = sink.truncated();
   auto [lower, upper] = bodies.roots.distance;
   if (result.leaf_pairs > 0) upper = std::min(upper, result.resolution);
-  if (front.empty()) {
-    lower = std::max(lower, front.extent - found.motion);
+  if (cache.empty()) {
+    lower = std::max(lower, cache.extent - found.motion);
     upper = std::min(upper, found.upper);
   }
   if (result.complete) {
-    coherent->prepare(bodies.relative, bodies.margin, result.leaf_pairs, found.tests, budget);
+    cached->prepare(bodies.relative, bodies.margin, result.leaf_pairs, found.tests, budget);
   }
   return {lower, upper};
 }

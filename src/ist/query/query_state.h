@@ -9,8 +9,8 @@
 
 #include "ist/base/float_environment.h"
 #include "ist/base/pose.h"
-#include "ist/query/coherent/coherent_search.h"
 #include "ist/query/exact/exact_search.h"
+#include "ist/query/pair_cache/cached_search.h"
 #include "ist/query/query.h"
 #include "ist/query/traversal/root_test.h"
 #include "ist/query/workers/shared_search.h"
@@ -56,7 +56,7 @@ struct QueryState {
   [[nodiscard]] double pad_of(const SearchPose& pose) const noexcept;
   /// Returns the search of the calling thread alone.
   [[nodiscard]] Search& serial() noexcept;
-  /// Passes the leaf pairs of two bodies whose roots overlap to a Lister's sink: from a front, or
+  /// Passes the leaf pairs of two bodies whose roots overlap to a Lister's sink: from a cache, or
   /// by a fresh search. Completes `result` but for its distance, and returns the interval of that.
   template <class Lister>
   [[nodiscard]] DistanceInterval search(const Approach& bodies, const SearchPose& pose,
@@ -72,10 +72,10 @@ struct QueryState {
                                  LeafPairSink& sink) noexcept;
   /// Returns the result that the root test alone gives.
   [[nodiscard]] QueryResult root_result(const RootTest& roots, double margin = 0) const noexcept;
-  /// Passes on the leaf pairs of a front, and goes on with the next one. Returns the interval of
-  /// the distance.
+  /// Passes on the leaf pairs of a pair cache, and goes on with the next one. Returns the interval
+  /// of the distance.
   template <class Sink>
-  [[nodiscard]] DistanceInterval answer_from(const CoherentSearch::FrontAt& found,
+  [[nodiscard]] DistanceInterval answer_from(const CachedSearch::CacheAt& found,
                                              const Approach& bodies, const SearchPose& pose,
                                              const Budget& budget, Sink& sink,
                                              QueryResult& result) noexcept;
@@ -93,7 +93,7 @@ struct QueryState {
   SearchPlan plan;
   std::size_t bytes;
   std::variant<std::monostate, Search, SharedSearch> searches;  // made after the plan it refers to
-  std::optional<CoherentSearch> coherent;
+  std::optional<CachedSearch> cached;
   std::optional<ExactSearch> exact;
   std::vector<LeafPair> window;  // the leaf pairs that a stream is given at once
   std::atomic_flag in_use;

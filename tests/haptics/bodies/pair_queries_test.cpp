@@ -202,7 +202,7 @@ TEST_F(Corner, ABudgetIsDividedByWhatEachPairNeeds) {
 }
 
 // Where little is missing the first pair goes without it, and those behind it have what they need.
-// Without fronts a pose takes the same tests each time.
+// Without caches a pose takes the same tests each time.
 TEST_F(Corner, TheFirstPairLeavesWhatTheOthersNeed) {
   Setting all = setting({0, 1, 2}, {.policy = SpherePolicy::kSlab, .front_pairs = 0});
   const Placement tool = pressed({1.2, -0.3, -0.3});

@@ -208,7 +208,7 @@ TEST(ToolContactQuery, TellsAClearanceWhereNothingIsTouched) {
   EXPECT_GT(lowest, 0);
 }
 
-// By trees with triangles and without, and with a front or none.
+// By trees with triangles and without, and with a cache or none.
 TEST(ToolContactQuery, TellsItsMemoryBeforeItIsReserved) {
   const SphereTree plain = tree_of(icosphere(3, kRadius), 12);
   for (const SphereTree* held : {&ball(), &plain}) {

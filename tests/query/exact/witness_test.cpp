@@ -99,8 +99,8 @@ TEST_F(Witness, IsIgnoredWhereTestsAreLimited) {
   }
 }
 
-// Forgets the pairs of a front too, also while the worker makes the next one.
-TEST_F(Witness, IsForgottenWithAFront) {
+// Forgets the pairs of a pair cache too, also while the worker makes the next one.
+TEST_F(Witness, IsForgottenWithACache) {
   for (const int workers : {1, 2}) {
     QueryOptions options{.workers = workers, .period = {}, .front_pairs = 1 << 14};
     Query query(fixed_, moving_, options), fresh(fixed_, moving_);

@@ -144,9 +144,9 @@ TEST(Allocations, ContactPointsMakeNone) {
   }
 }
 
-// Nor does a query that keeps a front: where it fits and where it does not, with one worker and
+// Nor does a query that keeps a cache: where it fits and where it does not, with one worker and
 // two, for leaf pairs and contacts, with a deadline and without.
-TEST(Allocations, AQueryThatKeepsAFrontMakesNone) {
+TEST(Allocations, AQueryThatKeepsACacheMakesNone) {
   const Scene& scene = solids()[0];
   for (const int workers : {1, 2}) {
     for (const std::size_t front_pairs : {std::size_t{100}, std::size_t{1} << 15}) {
@@ -169,7 +169,7 @@ TEST(Allocations, AQueryThatKeepsAFrontMakesNone) {
           clear += result.found == Found::kClear ? 1 : 0;
         }
       };
-      // A second worker that runs late makes fewer fronts in time.
+      // A second worker that runs late makes fewer caches in time.
       EXPECT_EQ(allocations_of([&] {
                   do {
                     go();

@@ -37,7 +37,7 @@ TEST(Locks, AreCountedHoweverTheyAreAskedFor) {
   EXPECT_EQ(locks_of([] {}), 0u);
 }
 
-// Every verb, from the very first query on, with and without a second worker and a front.
+// Every verb, from the very first query on, with and without a second worker and a cache.
 TEST(Locks, AQueryAsksForNone) {
   const Scene& scene = solids()[0];
   for (const int workers : {1, 2}) {
@@ -57,7 +57,7 @@ TEST(Locks, AQueryAsksForNone) {
                   }
                 }),
                 0u)
-          << workers << " workers, a front of " << front_pairs;
+          << workers << " workers, a cache of " << front_pairs;
       EXPECT_GT(pairs, 0u);
     }
   }

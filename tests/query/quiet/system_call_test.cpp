@@ -54,7 +54,7 @@ void query_in_silence(const Scene& scene, SpherePolicy policy, int workers) {
 std::atomic<int> parts_done{0};
 void count_part(HandOver at) noexcept { parts_done += at == HandOver::kWorked ? 1 : 0; }
 
-// A slow way with a front that is kept and made again. Goes on until it was kept often, and the
+// A slow way with a cache that is kept and made again. Goes on until it was kept often, and the
 // worker, if there is one, has made some.
 void carry_in_silence(const Scene& scene, int workers) {
   std::vector<LeafPair> out(1 << 16);
@@ -127,7 +127,7 @@ TEST_F(SystemCalls, ContactPointsMakeNone) {
       ::testing::ExitedWithCode(0), "");
 }
 
-TEST_F(SystemCalls, AQueryThatKeepsAFrontMakesNone) {
+TEST_F(SystemCalls, AQueryThatKeepsACacheMakesNone) {
   for (const int workers : {1, 2}) {
     EXPECT_EXIT(carry_in_silence(solids()[0], workers), ::testing::ExitedWithCode(0), "");
   }
