@@ -18,7 +18,7 @@ double extent_of(const SphereTree& tree) {
 
 void advise(benchmark::State& state, const AdviceGoal& goal) {
   VoxelAdvice advice;
-  const auto& [fixed, moving] = exact_trees(0.4);
+  const auto& [fixed, moving] = triangle_trees(0.4);
   for (auto _ : state) {
     const Stopwatch watch;
     Query exact(fixed, moving);

@@ -17,7 +17,7 @@ constexpr double kVoxelSize = 0.4;  // which does not matter
 constexpr double kTolerance = 0.05;
 
 Query query_of(int workers) {
-  const auto& [fixed, moving] = exact_trees(kVoxelSize);
+  const auto& [fixed, moving] = triangle_trees(kVoxelSize);
   return Query(fixed, moving, {.workers = workers, .period = {}});
 }
 

@@ -31,7 +31,7 @@ constexpr double kVoxelSize = 0.4;                            // which does not 
 constexpr double kReach = 2, kDepth = 0.01, kContact = 1e-3;  // mm
 
 Query make_query() {
-  const auto& [fixed, moving] = exact_trees(kVoxelSize);
+  const auto& [fixed, moving] = triangle_trees(kVoxelSize);
   return Query(fixed, moving);
 }
 
@@ -50,7 +50,7 @@ void add(const std::string& name, const Body& body) {
 }
 
 void distances(benchmark::State& state, const Eigen::Isometry3d& pose) {
-  const auto& [fixed, moving] = exact_trees(kVoxelSize);
+  const auto& [fixed, moving] = triangle_trees(kVoxelSize);
   std::size_t near = 0;
   for (auto _ : state) {
     near = 0;

@@ -43,7 +43,7 @@ class Job {
       : folder_(std::filesystem::temp_directory_path() /
                 fmt::format("ist-sweep-bench-{}", ::getpid())) {
     std::filesystem::create_directory(folder_);
-    const auto& [upper, lower] = exact_trees(kVoxelSize);
+    const auto& [upper, lower] = triangle_trees(kVoxelSize);
     write_tree(upper, folder_ / "upper.ist");
     write_tree(lower, folder_ / "lower.ist");
     std::ofstream(file()) << fmt::format(R"(answers = ["intersects", "distance"]

@@ -36,7 +36,7 @@ SphereTree shape(const TriangleMesh& mesh, double voxel_size) {
 // Two jaws that bite, a ball that leans on the front teeth and a bar below the lower jaw.
 struct FourBodies {
   FourBodies() {
-    const auto& [upper, lower] = exact_trees(kVoxelSize);
+    const auto& [upper, lower] = triangle_trees(kVoxelSize);
     const std::array trees = {upper, lower, shape(make_icosphere(4, 6), kVoxelSize),
                               shape(make_box({-30, -4, -4}, {30, 4, 4}), kVoxelSize)};
     places = {Eigen::Vector3d::Zero(), {0, 0, -1.5}, {0, -52, 48}, {0, -20, -20}};

@@ -10,7 +10,7 @@ compiler=$(g++ --version | head -n 1)
 commit=$(git rev-parse --short HEAD 2>/dev/null || echo none)
 git diff --quiet HEAD -- CMakeLists.txt CMakePresets.json src simd tests bench 2>/dev/null || commit+=+
 results=perf/results/$machine
-flags=$(grep -m 1 'exact_search.cpp\.o ' build/bench/compile_commands.json 2>/dev/null |
+flags=$(grep -m 1 'triangle_search.cpp\.o ' build/bench/compile_commands.json 2>/dev/null |
   tr ' ' '\n' | grep -E '^-(O|f|m|std=|DNDEBUG)' | grep -v -- -prefix-map= | tr '\n' ' ' || true)
 # Processors of one name differ: their family and model tell them apart.
 number() { sed -n "s/^$1[[:space:]]*: //p" /proc/cpuinfo | head -n 1; }

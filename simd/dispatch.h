@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "simd/contact_step.h"
-#include "simd/exact/cluster_step.h"
 #include "simd/pair_cache_step.h"
 #include "simd/step.h"
+#include "simd/triangles/cluster_step.h"
 
 namespace ist {
 

@@ -12,7 +12,7 @@ namespace {
 
 Query& exact_query() {
   constexpr double kVoxelSize = 0.4;  // the size of triangles, at which exact answers are fastest
-  static Query query(exact_trees(kVoxelSize).first, exact_trees(kVoxelSize).second);
+  static Query query(triangle_trees(kVoxelSize).first, triangle_trees(kVoxelSize).second);
   return query;
 }
 

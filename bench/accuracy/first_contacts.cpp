@@ -48,7 +48,7 @@ struct Finder {
 };
 
 Finder of_policy(double voxel_size, SpherePolicy policy) {
-  const auto& [fixed, moving] = exact_trees(voxel_size);
+  const auto& [fixed, moving] = triangle_trees(voxel_size);
   const auto query = std::make_shared<Query>(fixed, moving, with_policy(policy));
   const auto leaf_pairs = std::make_shared<std::vector<LeafPair>>(1 << 20);
   return {std::string(to_string(policy)),
@@ -63,7 +63,7 @@ Finder of_policy(double voxel_size, SpherePolicy policy) {
 
 // Triangles, in trees with voxels of this size: all pairs that meet, or only whether any do.
 Finder of_triangles(double voxel_size, bool all) {
-  const auto& [fixed, moving] = exact_trees(voxel_size);
+  const auto& [fixed, moving] = triangle_trees(voxel_size);
   const auto query = std::make_shared<Query>(fixed, moving);
   const auto pairs = std::make_shared<std::vector<TrianglePair>>(1 << 16);
   const auto intersects = [=](const Pose& pose) {

@@ -81,7 +81,7 @@ void of_voxels(benchmark::State& state, double voxel_size, SpherePolicy policy,
 
 void of_triangles(benchmark::State& state, double voxel_size, double tolerance,
                   std::size_t distance) {
-  const auto& [fixed, moving] = exact_trees(voxel_size);
+  const auto& [fixed, moving] = triangle_trees(voxel_size);
   Query query(fixed, moving);
   measure(state, distance,
           [&](const Pose& pose) { return query.distance(pose, tolerance).distance; });

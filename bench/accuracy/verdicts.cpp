@@ -96,7 +96,7 @@ std::uint64_t crossing(const SphereTree& fixed, const SphereTree& moving, const 
 }
 
 void judge(benchmark::State& state, double voxel_size, SpherePolicy policy) {
-  const auto& [fixed, moving] = exact_trees(voxel_size);
+  const auto& [fixed, moving] = triangle_trees(voxel_size);
   Query query(fixed, moving, with_policy(policy));
   double missed = 0, false_alarms = 0, touching = 0;
   std::vector<LeafPair> leaf_pairs(1 << 20);

@@ -59,7 +59,7 @@ struct Question {
 
 void measure(benchmark::State& state, const Question& question, double tolerance, double dz) {
   const ScopedThreadLimit one(1);
-  const auto& [fixed, moving] = exact_trees(kVoxelSize);
+  const auto& [fixed, moving] = triangle_trees(kVoxelSize);
   Query query(fixed, moving);
   const Pose pose = closing(dz);
   const Interval finest = question.ask(query, pose, tolerances().back());

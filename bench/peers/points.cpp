@@ -66,7 +66,7 @@ class Contest {
 
  private:
   void hold(std::size_t at) {
-    const auto& [fixed, moving] = exact_trees(voxel_size());
+    const auto& [fixed, moving] = triangle_trees(voxel_size());
     const Eigen::Isometry3d& pose = poses_[at].pose;
     const Points of_moving = near_vertices(moving, fixed, pose);
     const Points of_fixed = near_vertices(fixed, moving, pose.inverse());

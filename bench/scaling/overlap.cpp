@@ -28,12 +28,12 @@ std::vector<double> steps() {
 std::vector<Asked> ask_steps() {
   std::vector<Eigen::Isometry3d> poses;
   for (const double dz : steps()) poses.push_back(closing(dz));
-  return ask(exact_trees(kVoxelSize), poses, {rounds(500)});
+  return ask(triangle_trees(kVoxelSize), poses, {rounds(500)});
 }
 
 void report(benchmark::State& state, Series& series, std::size_t step) {
   const QueryResult result = series.report(state, step).result;
-  const auto& [fixed, moving] = exact_trees(kVoxelSize);
+  const auto& [fixed, moving] = triangle_trees(kVoxelSize);
   Query query(fixed, moving);
   std::vector<TrianglePair> pairs(kTrianglePairs);
   const Eigen::Isometry3d pose = closing(steps()[step]);

@@ -20,7 +20,7 @@ std::vector<Asked> ask_closing(int workers, bool paced) {
   const std::chrono::nanoseconds period(paced ? 1'000'000 : 0);
   std::vector<Eigen::Isometry3d> poses;
   for (const double dz : kClosing) poses.push_back(closing(dz));
-  return ask(exact_trees(kVoxelSize), poses, {rounds(1000), workers, period});
+  return ask(triangle_trees(kVoxelSize), poses, {rounds(1000), workers, period});
 }
 
 void report(benchmark::State& state, Series& series, std::size_t pose) {

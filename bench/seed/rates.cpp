@@ -70,7 +70,7 @@ constexpr double kDistances[] = {0, 0.5, 1, 1.5, 2, 2.5, 3, 4, 5, 7.5, 10, 15, 2
 // Which of the distances is right before collision: the first at which no triangles meet.
 void add_before_contact(const std::string& name, double unit) {
   benchmark::RegisterBenchmark(("before_contact/" + name).c_str(), [=](benchmark::State& state) {
-    const auto& [fixed, moving] = exact_trees(0.8);  // triangles meet whatever the voxels
+    const auto& [fixed, moving] = triangle_trees(0.8);  // triangles meet whatever the voxels
     Query query(fixed, moving);
     const double* apart = nullptr;
     for (auto _ : state) {

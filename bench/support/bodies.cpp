@@ -67,7 +67,7 @@ const Trees& trees(double voxel_size) {
   return trees_of(made, options_of(voxel_size, SpherePolicy::kSlab));
 }
 
-const Trees& exact_trees(double voxel_size) {
+const Trees& triangle_trees(double voxel_size) {
   static std::map<double, std::unique_ptr<Trees>> made;
   BuildOptions options = options_of(voxel_size, SpherePolicy::kSlab);
   options.keep_triangles = true;

@@ -29,7 +29,7 @@ namespace ist::bench {
 /// Both trees of a voxel size, which answer every policy; made once.
 [[nodiscard]] const std::pair<SphereTree, SphereTree>& trees(double voxel_size);
 /// The trees of trees(), with their triangles.
-[[nodiscard]] const std::pair<SphereTree, SphereTree>& exact_trees(double voxel_size);
+[[nodiscard]] const std::pair<SphereTree, SphereTree>& triangle_trees(double voxel_size);
 
 using test::closing;
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ist/models/models.h"
-#include "query/exact/exact_tree.h"
+#include "query/triangles/triangle_tree.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -14,7 +14,7 @@ namespace {
 // Two meshes as bodies.
 struct Pair {
   Pair(const TriangleMesh& a, const TriangleMesh& b)
-      : fixed(exact_tree(a, 1)), moving(exact_tree(b, 1)), exact(fixed, moving) {}
+      : fixed(triangle_tree(a, 1)), moving(triangle_tree(b, 1)), exact(fixed, moving) {}
 
   [[nodiscard]] AxisDirection shortest() const { return shortest_open_direction(fixed, moving); }
   [[nodiscard]] double distance(const Eigen::Isometry3d& pose) {

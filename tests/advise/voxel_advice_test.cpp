@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "query/exact/exact_tree.h"
+#include "query/triangles/triangle_tree.h"
 #include "support/effort.h"
 #include "support/errors.h"
 #include "support/shapes.h"
@@ -194,7 +194,7 @@ class SphereOnBox : public ::testing::Test {
     return measure_size(exact_, path->poses(), path, voxel_size, options, progress_);
   }
 
-  const SphereTree fixed_ = exact_tree(block(), 1), moving_ = exact_tree(sphere(), 1);
+  const SphereTree fixed_ = triangle_tree(block(), 1), moving_ = triangle_tree(sphere(), 1);
   Query exact_{fixed_, moving_};
   Progress progress_;
   const MeasureOptions brief_{.milliseconds = 1};

@@ -12,7 +12,7 @@
 #include "fuzz/fuzz_target.h"
 #include "fuzz/measure_checks.h"
 #include "fuzz/query_checks.h"
-#include "query/exact/exact_tree.h"
+#include "query/triangles/triangle_tree.h"
 #include "support/shapes.h"
 
 namespace ist::test {

@@ -5,7 +5,7 @@
 
 #include "ist/mesh/mesh.h"
 #include "ist/models/models.h"
-#include "query/exact/mesh_distance.h"
+#include "query/triangles/mesh_distance.h"
 
 namespace ist::test {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "ist/tree/tree_parts.h"
 #include "query/contacts/contact_cases.h"
-#include "query/exact/exact_tree.h"
-#include "query/exact/meeting_pairs.h"
-#include "query/exact/mesh_distance.h"
 #include "query/scenes.h"
+#include "query/triangles/meeting_pairs.h"
+#include "query/triangles/mesh_distance.h"
+#include "query/triangles/triangle_tree.h"
 #include "simd/dispatch.h"
 #include "stability/leaf_overlap.h"
 #include "support/rigid_pose.h"

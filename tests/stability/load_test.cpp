@@ -8,9 +8,9 @@
 
 #include "ist/mesh/mesh.h"
 #include "ist/query/query.h"
-#include "query/exact/exact_tree.h"
 #include "query/query_cases.h"
 #include "query/quiet/allocations.h"
+#include "query/triangles/triangle_tree.h"
 #include "support/data_dir.h"
 #include "support/effort.h"
 #include "support/skip.h"

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "ist/mesh/mesh.h"
-#include "query/exact/exact_tree.h"
-#include "query/exact/mesh_distance.h"
 #include "query/query_cases.h"
+#include "query/triangles/mesh_distance.h"
+#include "query/triangles/triangle_tree.h"
 #include "stability/sweep.h"
 #include "support/data_dir.h"
 #include "support/effort.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "ist/base/pose.h"
-#include "query/exact/exact_tree.h"
+#include "query/triangles/triangle_tree.h"
 #include "stability/all_engines.h"
 #include "support/effort.h"
 #include "support/exact_query.h"

@@ -9,10 +9,10 @@
 #include "ist/query/reference/reference_query.h"
 #include "ist/tree/tree_parts.h"
 #include "query/contacts/contact_cases.h"
-#include "query/exact/exact_tree.h"
-#include "query/exact/meeting_pairs.h"
-#include "query/exact/mesh_distance.h"
 #include "query/scenes.h"
+#include "query/triangles/meeting_pairs.h"
+#include "query/triangles/mesh_distance.h"
+#include "query/triangles/triangle_tree.h"
 #include "simd/targets.h"
 #include "support/data_dir.h"
 #include "support/effort.h"
@@ -128,9 +128,9 @@ TEST_P(RealBodies, KeepEveryGuarantee) {
       gap("shapes", name + ": gap", "mm that the distance is outside its interval");
   const TriangleMesh mesh = read_mesh(file);
   constexpr double kCells = 20;
-  const SphereTree body = exact_tree(mesh, kCells);
+  const SphereTree body = triangle_tree(mesh, kCells);
   const double size = body.voxel_size(), reach = 2 * size;
-  const SphereTree ball = exact_tree(icosphere(0, reach), 4);
+  const SphereTree ball = triangle_tree(icosphere(0, reach), 4);
   Random random(23);
   // On itself as it is; and a part of it in another part, where the check affords to look.
   check_answers(body, body, {Isometry3d::Identity()}, false, answers);

@@ -22,8 +22,9 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-SphereTree exact_tree_of(const TriangleMesh& mesh, double voxel_size, BuildReport* report = nullptr,
-                         std::uint64_t max_memory = BuildOptions().max_memory) {
+SphereTree triangle_tree_of(const TriangleMesh& mesh, double voxel_size,
+                            BuildReport* report = nullptr,
+                            std::uint64_t max_memory = BuildOptions().max_memory) {
   BuildOptions options;
   options.voxel_size = voxel_size;
   options.keep_triangles = true;
@@ -38,7 +39,7 @@ TEST(ShapeLimits, AMeshWithoutExtentIsRefused) {
     const TriangleMesh mesh =
         triangle(at, at + Vector3d(extent, 0, 0), at + Vector3d(0, 0.5 * extent, 0));
     const std::string found =
-        error_name([&] { static_cast<void>(exact_tree_of(mesh, voxel_size)); });
+        error_name([&] { static_cast<void>(triangle_tree_of(mesh, voxel_size)); });
     answers.sample(found == error ? 0 : 1, 0, found + " where " + error + " was expected");
   };
   const Vector3d origin(0, 0, 0), away(3, 4, 5);
@@ -76,16 +77,16 @@ TEST(ShapeLimits, HoldWithManyTrianglesInOnePlace) {
       answers("shapes", "coincident triangles by the million", "wrong answers");
   constexpr std::uint64_t kMost = std::uint64_t{1} << 30;
   const TriangleMesh mesh = coincident(count);
-  const SphereTree tree = exact_tree_of(mesh, 1.9, nullptr, kMost);
+  const SphereTree tree = triangle_tree_of(mesh, 1.9, nullptr, kMost);
   memory.sample(static_cast<double>(tree.bytes()), static_cast<double>(kMost));
-  EXPECT_EQ(error_name([&] { static_cast<void>(exact_tree_of(mesh, 1e-4, nullptr, 1 << 22)); }),
+  EXPECT_EQ(error_name([&] { static_cast<void>(triangle_tree_of(mesh, 1e-4, nullptr, 1 << 22)); }),
             "memory-limit");
-  const SphereTree once = exact_tree_of(coincident(1), 1.9);
+  const SphereTree once = triangle_tree_of(coincident(1), 1.9);
   answers.sample(parts_of(tree).octree.codes(0) == parts_of(once).octree.codes(0) ? 0 : 1, 0,
                  "voxels");
 
   const SphereTree other =
-      exact_tree_of(triangle({0, 0, -0.5}, {0.3, 0.1, 0.9}, {-0.2, 0.2, 0.7}), 0.5);
+      triangle_tree_of(triangle({0, 0, -0.5}, {0.3, 0.1, 0.9}, {-0.2, 0.2, 0.7}), 0.5);
   std::vector<TrianglePair> first(1000);
   for (const SpherePolicy policy : kSpherePolicies) {
     QueryOptions options;
@@ -124,13 +125,13 @@ TEST(ShapeLimits, InsideOutIsOutsideOut) {
   const TriangleMesh meshes[] = {icosphere(2, 1), box({-1, -0.8, -0.9}, {1, 0.7, 0.6}),
                                  moved(plate_with_holes(17), {-4, -3, -1}),
                                  joined(icosphere(1, 0.6), moved(icosphere(1, 0.5), {1, 1, 0}))};
-  const SphereTree ball = exact_tree_of(icosphere(2, 0.7), 0.2);
+  const SphereTree ball = triangle_tree_of(icosphere(2, 0.7), 0.2);
   Random random(5);
   std::size_t pressed = 0;
   for (const TriangleMesh& mesh : meshes) {
     BuildReport report;
-    const SphereTree right = exact_tree_of(mesh, 0.21),
-                     turned = exact_tree_of(inside_out(mesh), 0.21, &report);
+    const SphereTree right = triangle_tree_of(mesh, 0.21),
+                     turned = triangle_tree_of(inside_out(mesh), 0.21, &report);
     EXPECT_EQ(report.turned_components, check_mesh(mesh).components);
     for (const SpherePolicy policy : kSpherePolicies) {
       Query a(right, ball, options_of(policy)), b(turned, ball, options_of(policy)),

@@ -8,7 +8,7 @@
 #include "ist/query/query.h"
 #include "ist/query/reference/reference_query.h"
 #include "ist/tree/sphere_tree.h"
-#include "query/exact/exact_tree.h"
+#include "query/triangles/triangle_tree.h"
 #include "support/effort.h"
 #include "support/exact_query.h"
 #include "support/shapes.h"
@@ -37,7 +37,7 @@ class Guarantee : public ::testing::TestWithParam<SpherePolicy> {
 
   Random random_{7};
   const TriangleMesh fixed_mesh_ = icosphere(1, 1), moving_mesh_ = icosphere(2, 0.9);
-  const SphereTree fixed_ = exact_tree(fixed_mesh_, 9), moving_ = exact_tree(moving_mesh_, 7);
+  const SphereTree fixed_ = triangle_tree(fixed_mesh_, 9), moving_ = triangle_tree(moving_mesh_, 7);
   const Eigen::Isometry3d pose_ = pose_of(random_.rotation(), {1.1, 0.4, 0.3});
   const AnswerVerifier check_{fixed_, moving_, GetParam()};
 };
@@ -146,8 +146,8 @@ TEST_P(Guarantee, NoFalseAlarm) {
   std::size_t leaf_pairs = 0;
   for (int i = 0; i < samples(60); ++i) {
     SCOPED_TRACE(i);
-    const SphereTree a = exact_tree(random_mesh(random_), random_.uniform(1, 12));
-    const SphereTree b = exact_tree(random_mesh(random_), random_.uniform(1, 12));
+    const SphereTree a = triangle_tree(random_mesh(random_), random_.uniform(1, 12));
+    const SphereTree b = triangle_tree(random_mesh(random_), random_.uniform(1, 12));
     const AnswerVerifier check(a, b, GetParam());
     ReferenceQuery reference(a, b, GetParam());
     QueryOptions options;
@@ -200,7 +200,7 @@ TEST_P(Guarantee, AnswersAreAboutTheProjectedPose) {
   constexpr double kFar = 1e5, kStretch = 4e-6;
   TriangleMesh far = moving_mesh_;
   for (Eigen::Vector3d& vertex : far.vertices) vertex[0] += kFar;
-  const SphereTree moving = exact_tree(far, 7);
+  const SphereTree moving = triangle_tree(far, 7);
   const AnswerVerifier check(fixed_, moving, GetParam());
   QueryOptions options;
   options.policy = GetParam();

@@ -83,8 +83,9 @@ IntersectionResult Query::intersects(const Eigen::Isometry3d& pose, const Budget
   IntersectionResult result{
       .answer = Answer::kNo, .complete = true, .sphere_tests = 1, .rotation_error = off};
   if (!bodies->roots.overlap) return result;
-  if (s.exact) {
-    const ExactSearch::Any any = s.exact->any({*project_to_rigid(pose), bodies->relative}, budget);
+  if (s.triangles) {
+    const TriangleSearch::Any any =
+        s.triangles->any({*project_to_rigid(pose), bodies->relative}, budget);
     result.sphere_tests += any.tests;
     result.complete = any.complete;
     result.answer = any.found ? Answer::kYes : any.complete ? Answer::kNo : Answer::kUnknown;
@@ -164,7 +165,7 @@ TrianglePairsResult Query::triangle_pairs(const Eigen::Isometry3d& pose,
   detail::QueryState& s = *state_;
   const detail::Use use(s);
   if (!use) return {.status = QueryStatus::kBusy, .complete = false};
-  if (!s.exact) return {.status = QueryStatus::kNoTriangles, .complete = false};
+  if (!s.triangles) return {.status = QueryStatus::kNoTriangles, .complete = false};
   const std::optional<detail::Approach> bodies = s.approach(pose, s.triangle_error(pose));
   const double off = rotation_error(pose);
   if (!bodies) {
@@ -172,11 +173,11 @@ TrianglePairsResult Query::triangle_pairs(const Eigen::Isometry3d& pose,
   }
   TrianglePairsResult result{.sphere_tests = 1, .rotation_error = off};
   if (!bodies->roots.overlap) return result;
-  const ExactSearch::End end =
-      s.exact->pairs({*project_to_rigid(pose), bodies->relative}, budget, out);
+  const TriangleSearch::End end =
+      s.triangles->pairs({*project_to_rigid(pose), bodies->relative}, budget, out);
   result.sphere_tests += end.tests;
   result.complete = end.complete;
-  result.triangle_pairs = s.exact->pair_count();
+  result.triangle_pairs = s.triangles->pair_count();
   result.truncated = result.triangle_pairs > out.size();
   return result;
 }
@@ -185,11 +186,11 @@ void Query::forget() noexcept {
   detail::QueryState& s = *state_;
   const detail::Use use(s);
   if (!use) return;
-  if (s.exact) s.exact->forget();
+  if (s.triangles) s.triangles->forget();
   if (s.cached) s.cached->forget();
 }
 
-bool Query::has_triangles() const noexcept { return state_->exact.has_value(); }
+bool Query::has_triangles() const noexcept { return state_->triangles.has_value(); }
 const SphereTree& Query::fixed() const noexcept { return state_->fixed; }
 const SphereTree& Query::moving() const noexcept { return state_->moving; }
 SpherePolicy Query::policy() const noexcept { return state_->policy; }
@@ -203,7 +204,7 @@ Sharing sharing_of(const Query& query) noexcept {
   const detail::QueryState& s = detail::Access::state(query);
   const auto* shared = std::get_if<SharedSearch>(&s.searches);
   Sharing sum = shared != nullptr ? shared->sharing() : Sharing{};
-  if (s.exact) sum += s.exact->sharing();
+  if (s.triangles) sum += s.triangles->sharing();
   return sum;
 }
 

@@ -66,7 +66,7 @@ DistanceResult Query::distance(const Eigen::Isometry3d& pose, double tolerance,
   if (!bodies) return {.status = QueryStatus::kInvalidPose, .rotation_error = off};
   DistanceResult result{
       .distance = bodies->roots.distance, .sphere_tests = 1, .rotation_error = off};
-  if (s.exact) {
+  if (s.triangles) {
     s.nearest_triangles(pose, *bodies, tolerance, budget, result);
   } else {
     s.nearest_leaves(*bodies, tolerance, budget, result);
@@ -82,13 +82,13 @@ void detail::QueryState::nearest_triangles(const Eigen::Isometry3d& pose, const 
   auto& [lower, upper] = result.distance;
   // Far from the origin the rounding error of a moved vertex can exceed the distance.
   const double off = bodies.margin;
-  if (exact->is_too_far(bodies.relative)) {
+  if (triangles->is_too_far(bodies.relative)) {
     result.narrowest = upper - lower;
     return;
   }
   DistanceInterval nearest{0, upper};
-  const ExactSearch::Nearest end = exact->nearest({*project_to_rigid(pose), bodies.relative},
-                                                  tolerance - 2 * off, budget, nearest);
+  const TriangleSearch::Nearest end = triangles->nearest({*project_to_rigid(pose), bodies.relative},
+                                                         tolerance - 2 * off, budget, nearest);
   const bool apart = nearest.upper > 0;
   result.distance = {apart ? std::max(lower, nearest.lower - off) : 0,
                      apart ? std::min(upper, nearest.upper + off) : 0};

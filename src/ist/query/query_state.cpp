@@ -49,7 +49,7 @@ std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const Sp
     bytes += CachedSearch::bytes_for(plan, coherent_options(options));
   }
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    bytes += ExactSearch::bytes_for(fixed, moving, options.workers);
+    bytes += TriangleSearch::bytes_for(fixed, moving, options.workers);
   }
   return bytes;
 }
@@ -90,7 +90,7 @@ QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tr
   }
   window.resize(kWindow + kLeafPairSpare);
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    exact.emplace(fixed, moving, kernels, WorkerOptions{options.workers, options.period});
+    triangles.emplace(fixed, moving, kernels, WorkerOptions{options.workers, options.period});
   }
 }
 
@@ -103,7 +103,7 @@ std::size_t QueryState::bytes_for(const SphereTree& fixed, const SphereTree& mov
 double QueryState::triangle_error(const Eigen::Isometry3d& pose) const noexcept {
   // Bounds are inflated by the rounding error of a moved vertex, so that triangles which intersect
   // only after rounding are found (docs/guarantees.md, Triangles moved in double).
-  return exact ? exact->moved_error(pose) : 0;
+  return triangles ? triangles->moved_error(pose) : 0;
 }
 
 std::optional<Approach> QueryState::approach(const Eigen::Isometry3d& pose,

@@ -9,10 +9,10 @@
 
 #include "ist/base/float_environment.h"
 #include "ist/base/pose.h"
-#include "ist/query/exact/exact_search.h"
 #include "ist/query/pair_cache/cached_search.h"
 #include "ist/query/query.h"
 #include "ist/query/traversal/root_test.h"
+#include "ist/query/triangles/triangle_search.h"
 #include "ist/query/workers/shared_search.h"
 
 namespace ist::detail {
@@ -94,7 +94,7 @@ struct QueryState {
   std::size_t bytes;
   std::variant<std::monostate, Search, SharedSearch> searches;  // made after the plan it refers to
   std::optional<CachedSearch> cached;
-  std::optional<ExactSearch> exact;
+  std::optional<TriangleSearch> triangles;
   std::vector<LeafPair> window;  // the leaf pairs that a stream is given at once
   std::atomic_flag in_use;
 };

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "query/exact/exact_tree.h"
-#include "query/exact/mesh_distance.h"
 #include "query/pair_cache/motions.h"
+#include "query/triangles/mesh_distance.h"
+#include "query/triangles/triangle_tree.h"
 #include "support/effort.h"
 
 namespace ist::test {
@@ -26,8 +26,8 @@ class ClearDistance : public ::testing::Test {
   void make(const TriangleMesh& fixed, const TriangleMesh& moving, double cells, int workers = 1) {
     fixed_mesh_ = fixed;
     moving_mesh_ = moving;
-    fixed_.emplace(exact_tree(fixed, cells));
-    moving_.emplace(exact_tree(moving, cells));
+    fixed_.emplace(triangle_tree(fixed, cells));
+    moving_.emplace(triangle_tree(moving, cells));
     QueryOptions options;
     options.workers = workers;
     options.period = std::chrono::nanoseconds(0);

@@ -7,8 +7,8 @@
 #include <thread>
 #include <vector>
 
-#include "query/exact/exact_tree.h"
 #include "query/pair_cache/kept_answers.h"
+#include "query/triangles/triangle_tree.h"
 #include "support/errors.h"
 
 namespace ist::test {
@@ -97,7 +97,7 @@ class BlockingStream final : public LeafPairStream {
 
 class TwoThreads : public ::testing::Test {
  protected:
-  const SphereTree ball_ = exact_tree(icosphere(3, 1), 20);
+  const SphereTree ball_ = triangle_tree(icosphere(3, 1), 20);
   const Eigen::Isometry3d pose_ = shift({1.9, 0, 0});
 };
 

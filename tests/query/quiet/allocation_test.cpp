@@ -5,9 +5,9 @@
 
 #include "ist/query/reference/reference_query.h"
 #include "ist/query/workers/sharing.h"
-#include "query/exact/exact_tree.h"
 #include "query/quiet/allocations.h"
 #include "query/scenes.h"
+#include "query/triangles/triangle_tree.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -47,7 +47,7 @@ std::int64_t more_than_stated(const Make& make) {
 // Its plan and other parts of one size come beside the bytes that it states.
 TEST(Allocations, OfAQueryAreTheBytesThatItStates) {
   constexpr std::int64_t kMostBeside = 72'000;
-  const SphereTree exact = exact_tree(icosphere(3, 1), 20);
+  const SphereTree exact = triangle_tree(icosphere(3, 1), 20);
   const SphereTree trees[] = {exact, without_triangles(exact)};
   const Query first(exact, exact, {.workers = 2});  // has TBB make its threads
   for (const SphereTree& tree : trees) {
@@ -69,7 +69,7 @@ TEST(Allocations, OfAQueryAreTheBytesThatItStates) {
 }
 
 TEST(Allocations, OfAManifoldAreTheBytesThatItStates) {
-  const SphereTree tree = exact_tree(icosphere(3, 1), 20);
+  const SphereTree tree = triangle_tree(icosphere(3, 1), 20);
   for (const std::size_t points : {0u, 1u, 32u}) {
     for (const std::size_t leaves : {1u, 100u, 1u << 20}) {
       ManifoldOptions options;
@@ -182,7 +182,7 @@ TEST(Allocations, AQueryThatKeepsACacheMakesNone) {
 
 // Nor do certified answers: not for the distance, nor for triangles.
 TEST(Allocations, CertifiedAnswersMakeNone) {
-  const SphereTree tree = exact_tree(icosphere(3, 1), 20);
+  const SphereTree tree = triangle_tree(icosphere(3, 1), 20);
   for (const int workers : {1, 2}) {
     QueryOptions options;
     options.workers = workers;

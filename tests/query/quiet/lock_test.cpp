@@ -5,9 +5,9 @@
 #include <shared_mutex>
 #include <vector>
 
-#include "query/exact/exact_tree.h"
 #include "query/quiet/locks.h"
 #include "query/scenes.h"
+#include "query/triangles/triangle_tree.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -64,7 +64,7 @@ TEST(Locks, AQueryAsksForNone) {
 }
 
 TEST(Locks, AnExactAnswerAsksForNone) {
-  const SphereTree tree = exact_tree(icosphere(3, 1), 20);
+  const SphereTree tree = triangle_tree(icosphere(3, 1), 20);
   for (const int workers : {1, 2}) {
     QueryOptions options;
     options.workers = workers;

@@ -6,9 +6,9 @@
 
 #include "ist/query/workers/resident_worker.h"
 #include "ist/query/workers/sharing.h"
-#include "query/exact/exact_tree.h"
 #include "query/quiet/world_ticks.h"
 #include "query/scenes.h"
+#include "query/triangles/triangle_tree.h"
 #include "support/effort.h"
 #include "support/shapes.h"
 #include "support/skip.h"
@@ -136,7 +136,7 @@ TEST_F(SystemCalls, AQueryThatKeepsACacheMakesNone) {
 TEST_F(SystemCalls, CertifiedAnswersMakeNone) {
   EXPECT_EXIT(
       {
-        const SphereTree tree = exact_tree(icosphere(3, 1), 20);
+        const SphereTree tree = triangle_tree(icosphere(3, 1), 20);
         Query query(tree, tree);
         std::vector<LeafPair> leaf_pairs(1 << 16);
         std::vector<TrianglePair> pairs(1 << 16);

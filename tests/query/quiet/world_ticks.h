@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ist/query/world/world.h"
-#include "query/exact/exact_tree.h"
+#include "query/triangles/triangle_tree.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -17,7 +17,7 @@ inline World row_of_balls() {
   options.query.frontier_pairs = 1 << 10;
   options.query.front_pairs = 1 << 10;
   World world(options);
-  const SphereTree ball = exact_tree(icosphere(2, 1), 10);
+  const SphereTree ball = triangle_tree(icosphere(2, 1), 10);
   for (int i = 0; i < 12; ++i) world.add(ball, shift({1.8 * i, 0, 0}));
   world.ignore(0, 1);
   std::vector<BodyPair> some;

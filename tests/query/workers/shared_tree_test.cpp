@@ -5,8 +5,8 @@
 #include <thread>
 #include <vector>
 
-#include "query/exact/exact_tree.h"
 #include "query/scenes.h"
+#include "query/triangles/triangle_tree.h"
 #include "support/effort.h"
 #include "support/shapes.h"
 #include "support/stability.h"
@@ -58,7 +58,7 @@ class Asker {
 // resident worker too.
 TEST(SharedTreeThread, ServesAQueryOnEachThread) {
   constexpr int kThreads = 8;
-  const SphereTree tree = exact_tree(icosphere(3, 1), 16);
+  const SphereTree tree = triangle_tree(icosphere(3, 1), 16);
   std::vector<Isometry3d> poses;
   for (const double z : {2.2, 1.9, 1.4, 0.3}) poses.push_back(shift({0.1, 0.05, z}));
   std::vector<Everything> expected;

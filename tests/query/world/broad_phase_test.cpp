@@ -10,7 +10,7 @@
 #include "ist/query/traversal/root_test.h"
 #include "ist/query/traversal/search_pose.h"
 #include "ist/tree/tree_parts.h"
-#include "query/exact/exact_tree.h"
+#include "query/triangles/triangle_tree.h"
 #include "query/world/world_cases.h"
 #include "support/effort.h"
 #include "support/shapes.h"

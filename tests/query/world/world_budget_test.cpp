@@ -3,8 +3,8 @@
 
 #include <chrono>
 
-#include "query/exact/exact_tree.h"
 #include "query/test_clocks.h"
+#include "query/triangles/triangle_tree.h"
 #include "query/world/world_cases.h"
 #include "support/shapes.h"
 
@@ -15,7 +15,7 @@ class WorldBudget : public ::testing::Test {
  protected:
   // Balls in a row, each touching the next.
   WorldBudget() : world_(small_world()) {
-    const SphereTree ball = exact_tree(icosphere(3, 1), 24);
+    const SphereTree ball = triangle_tree(icosphere(3, 1), 24);
     for (int i = 0; i < 5; ++i) world_.add(ball, shift({1.9 * i, 0, 0}));
     world_.prepare();
   }

@@ -1,6 +1,6 @@
 #include "query/world/world_cases.h"
 
-#include "query/exact/exact_tree.h"
+#include "query/triangles/triangle_tree.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -10,7 +10,7 @@ std::vector<PlacedTree> scattered(Random& random, std::size_t count, double exte
   for (std::size_t i = 0; i < count; ++i) {
     const TriangleMesh mesh = random_mesh(random);
     const Eigen::Isometry3d pose = pose_of(random.rotation(), random.point(0, extent));
-    bodies.push_back({exact_tree(mesh, random.uniform(2, 10)), pose});
+    bodies.push_back({triangle_tree(mesh, random.uniform(2, 10)), pose});
   }
   return bodies;
 }

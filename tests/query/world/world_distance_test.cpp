@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "ist/tree/tree_parts.h"
-#include "query/exact/exact_tree.h"
-#include "query/exact/mesh_distance.h"
+#include "query/triangles/mesh_distance.h"
+#include "query/triangles/triangle_tree.h"
 #include "query/world/world_cases.h"
 #include "support/effort.h"
 #include "support/shapes.h"
@@ -141,7 +141,7 @@ TEST(WorldDistance, IsTrueHoweverEarlyABudgetEndsIt) {
 }
 
 TEST(WorldDistance, IsOfTheOthersWhereABodyHasNoPose) {
-  const SphereTree ball = exact_tree(icosphere(2, 1), 8);
+  const SphereTree ball = triangle_tree(icosphere(2, 1), 8);
   World world(small_world());
   for (const double x : {0.0, 3.0, 2.5}) world.add(ball, shift({x, 0, 0}));
   world.prepare();

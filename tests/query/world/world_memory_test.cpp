@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "query/exact/exact_tree.h"
+#include "query/triangles/triangle_tree.h"
 #include "query/world/world_cases.h"
 #include "support/errors.h"
 #include "support/shapes.h"
@@ -16,8 +16,8 @@ class WorldMemory : public ::testing::Test {
   // Balls of three sizes of voxels, one without triangles.
   static const std::vector<SphereTree>& trees() {
     static const std::vector<SphereTree> made = {
-        exact_tree(icosphere(3, 1), 20), exact_tree(icosphere(2, 1), 7),
-        without_triangles(exact_tree(icosphere(2, 1), 12))};
+        triangle_tree(icosphere(3, 1), 20), triangle_tree(icosphere(2, 1), 7),
+        without_triangles(triangle_tree(icosphere(2, 1), 12))};
     return made;
   }
   static World world_of_trees(const WorldOptions& options) {
@@ -154,7 +154,7 @@ TEST_F(WorldMemory, OutlivesTheTreesAndMoves) {
   World first = [] {
     World world(small_world());
     for (int i = 0; i < 3; ++i) {
-      const SphereTree short_lived = exact_tree(icosphere(2, 1), 8);
+      const SphereTree short_lived = triangle_tree(icosphere(2, 1), 8);
       world.add(short_lived);
     }
     return world;

@@ -8,8 +8,8 @@
 
 #include "ist/base/pose.h"
 #include "ist/tree/tree_parts.h"
-#include "query/exact/exact_tree.h"
-#include "query/exact/meeting_pairs.h"
+#include "query/triangles/meeting_pairs.h"
+#include "query/triangles/triangle_tree.h"
 #include "query/world/world_cases.h"
 #include "support/effort.h"
 #include "support/shapes.h"
@@ -250,7 +250,7 @@ TEST(World, GivesTheStatusOfAPoseToItsPairsAlone) {
 
 // Poses at the end of what a double holds: nothing is missed, and nothing hangs.
 TEST(World, HoldsPosesFarAway) {
-  const SphereTree ball = exact_tree(icosphere(2, 1), 8);
+  const SphereTree ball = triangle_tree(icosphere(2, 1), 8);
   World world(small_world());
   for (const double x : {1e308, 1e308, -1e308, 0.0, 1.5, 1e200, 1e154})
     world.add(ball, shift({x, x, x}));
@@ -273,7 +273,7 @@ TEST(World, HoldsPosesFarAway) {
 }
 
 TEST(World, NeverLooksAtAPairThatIsIgnored) {
-  const SphereTree ball = exact_tree(icosphere(2, 1), 8);
+  const SphereTree ball = triangle_tree(icosphere(2, 1), 8);
   World world(small_world());
   for (const double x : {0.0, 0.5, 1.0}) world.add(ball, shift({x, 0, 0}));
   world.ignore(2, 0);
@@ -298,7 +298,7 @@ TEST(World, NeverLooksAtAPairThatIsIgnored) {
 }
 
 TEST(World, TellsOfPairsThatWereNotPrepared) {
-  const SphereTree ball = exact_tree(icosphere(2, 1), 8);
+  const SphereTree ball = triangle_tree(icosphere(2, 1), 8);
   World world(small_world());
   EXPECT_EQ(world.ask(kIntersects).status, QueryStatus::kNotPrepared);
   for (const double x : {0.0, 1.5, 3.0}) world.add(ball, shift({x, 0, 0}));
@@ -331,7 +331,7 @@ TEST(World, TellsOfPairsThatWereNotPrepared) {
 }
 
 TEST(World, ListsThePreparedPairsFirstWhereMoreAreNearThanFit) {
-  const SphereTree ball = exact_tree(icosphere(2, 1), 8);
+  const SphereTree ball = triangle_tree(icosphere(2, 1), 8);
   WorldOptions options = small_world();
   options.most_near = 2;
   World world(options);
@@ -351,7 +351,7 @@ TEST(World, ListsThePreparedPairsFirstWhereMoreAreNearThanFit) {
 }
 
 TEST(World, ReachesFartherWhereItIsAskedTo) {
-  const SphereTree ball = exact_tree(icosphere(2, 1), 8);
+  const SphereTree ball = triangle_tree(icosphere(2, 1), 8);
   for (const double reach : {0.0, 3.0}) {
     WorldOptions options = small_world();
     options.reach = reach;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr DistanceInterval kUnknown = {0, kLargestDistance};
 
-// An upper bound of the rounding error of a moved triangle (ExactSearch::moved_error): no vertex
+// An upper bound of the rounding error of a moved triangle (TriangleSearch::moved_error): no vertex
 // lies beyond the bounding radius.
 double moved_error(const SphereTree& moving, const BodyPose& pose) noexcept {
   const Eigen::Vector3d origin = moving.origin();

@@ -1,0 +1,193 @@
+#include "ist/query/triangles/triangle_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ist/base/float_rounding.h"
+#include "ist/base/ordered_vector.h"
+#include "ist/query/triangles/nearest_beam.h"
+#include "ist/query/triangles/nearest_pair.h"
+#include "ist/query/triangles/triangle_visitors.h"
+#include "ist/tree/tree_parts.h"
+
+namespace ist {
+namespace {
+
+// The test of the roots, which counts.
+constexpr std::uint64_t kRootTests = 1;
+// The last nearest pair is a begin only where it is near: no farther than it was, by more than this
+// factor and the tolerance, and no farther than a part of the bodies' radii. Else others are looked
+// for first, as by a new query.
+constexpr double kNearWitness = 1.25, kNearBodies = 0x1p-5;
+// Pairs that are sorted fast.
+constexpr std::size_t kSorted = 1 << 14;
+
+// Returns the largest coordinate, without its sign, of a vertex in use; others may lie anywhere.
+double largest_coordinate(const TriangleMesh& mesh) {
+  double largest = 0;
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) {
+      largest = std::max(largest, mesh.vertices[v].cwiseAbs().maxCoeff());
+    }
+  }
+  return largest;
+}
+
+double longest_edge(const TriangleMesh& mesh) {
+  double squared = 0;
+  for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
+    const TriangleCorners t = corners_of(mesh, k);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Eigen::Vector3d edge = difference(t[i], t[(i + 1) % 3]);
+      squared = std::max(squared, dot_in_order(edge, edge));
+    }
+  }
+  return std::sqrt(squared);
+}
+
+}  // namespace
+
+TriangleSearch::TriangleSearch(const SphereTree& fixed, const SphereTree& moving,
+                               const Kernels& kernels, const WorkerOptions& options)
+    : fixed_(fixed),
+      moving_(moving),
+      fixed_clusters_(parts_of(fixed).triangles->clusters),
+      moving_clusters_(parts_of(moving).triangles->clusters),
+      kernels_(kernels.clusters),
+      largest_coordinate_(largest_coordinate(*moving.triangles())),
+      longest_edge_(std::max(longest_edge(*fixed.triangles()), longest_edge(*moving.triangles()))),
+      search_(fixed_clusters_, moving_clusters_, kernels_),
+      list_(kSorted) {
+  if (options.workers == 2) {
+    shared_.emplace(fixed_clusters_, moving_clusters_, kernels_, options.period);
+  }
+}
+
+double TriangleSearch::moved_error(const Eigen::Isometry3d& rigid) const noexcept {
+  return 0x1p-48 * (largest_coordinate_ + rigid.translation().cwiseAbs().maxCoeff());
+}
+
+bool TriangleSearch::is_too_far(const RelativePose& pose) const noexcept {
+  constexpr double kFar = 0x1p12;
+  return pose.translation.cwiseAbs().maxCoeff() > kFar * radii();
+}
+
+// The motion between the clusters' frames. Beside the rounding of moved vertices, that of the
+// frames' origins, of the motion's product, and of coordinates in a frame.
+ClusterPose TriangleSearch::cluster_pose(const TrianglePose& pose) const noexcept {
+  const Eigen::Matrix3d &a = fixed_clusters_.axes(), &b = moving_clusters_.axes();
+  ClusterPose out;
+  Eigen::Matrix3d turned;  // rotation · b
+  const auto& r = pose.relative.rotation;
+  const auto product = [](const auto& row, const auto& column) {
+    return (row[0] * column[0] + row[1] * column[1]) + row[2] * column[2];
+  };
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) turned(i, j) = product(r.row(i), b.col(j));
+  }
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      out.rotation[i][j] = product(a.col(i), turned.col(j));
+    }
+    out.translation[i] = product(a.col(i), pose.relative.translation);
+  }
+  out.grid = fixed_clusters_.grid();
+  const double frames =
+      0x1p-46 * (fixed_.bounding_radius() + moving_.bounding_radius() +
+                 pose.relative.translation.cwiseAbs().maxCoeff()) +
+      0x1p-50 * (fixed_.origin().cwiseAbs().maxCoeff() + moving_.origin().cwiseAbs().maxCoeff());
+  out.error = rounded_up(2 * moved_error(pose.rigid) + frames);
+  return out;
+}
+
+TriangleSearch::End TriangleSearch::pairs(const TrianglePose& pose, const Budget& budget,
+                                          std::span<TrianglePair> out) noexcept {
+  list_.begin(out);
+  const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
+  search_.begin(cluster_pose(pose));
+  AllPairs all({search_.step(), kernels_, meshes, memory_, budget}, list_);
+  BudgetMeter meter(budget, kRootTests);
+  bool complete =
+      shared_ ? shared_->run(search_, meshes, meter, all, list_) : search_.run(meter, all);
+  complete = all.finish() && complete;
+  list_.finish();
+  if (list_.count() > 0 && !out.empty()) met_ = {out[0].fixed, out[0].moving};
+  return {complete, meter.spent() - kRootTests};
+}
+
+TriangleSearch::Any TriangleSearch::any(const TrianglePose& pose, const Budget& budget) noexcept {
+  const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
+  if (still_meet(meshes, budget)) return {{true, 1}, true};
+  AnyPair any({search_.step(), kernels_, meshes, memory_, budget});
+  BudgetMeter meter(budget, kRootTests);
+  search_.begin(cluster_pose(pose));
+  const bool complete = search_.run(meter, any);
+  if (any.found()) met_ = any.found();
+  return {{complete || any.found(), meter.spent() - kRootTests}, any.found().has_value()};
+}
+
+TriangleSearch::Nearest TriangleSearch::nearest(const TrianglePose& pose, double tolerance,
+                                                const Budget& budget,
+                                                DistanceInterval& distance) noexcept {
+  const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
+  if (still_meet(meshes, budget)) {
+    distance = {0, 0};
+    return {{true, 1}, 0};
+  }
+  search_.begin(cluster_pose(pose));
+  NearestPair nearest({search_.step(), kernels_, meshes, memory_, budget}, tolerance, longest_edge_,
+                      distance.upper);
+  BudgetMeter meter(budget, kRootTests);
+  bool near = false;
+  if (nearest_ && !budget.has_tests()) {
+    nearest.measure(nearest_->ids);
+    near = nearest.ids() && nearest.distance() <= kNearWitness * nearest_->distance + tolerance &&
+           nearest.distance() <= kNearBodies * radii();
+    meter.spend(1);
+  }
+  if (!near) begin_nearest(meter, nearest);
+  bool complete = nearest.distance() == 0 || search_.run(meter, nearest);
+  complete = complete || nearest.distance() == 0;
+  if (nearest.distance() == 0) {
+    met_ = nearest.ids();
+  } else if (nearest.ids()) {
+    nearest_ = {*nearest.ids(), nearest.distance()};
+  }
+  const double error = nearest.error();
+  double lower =
+      nearest.distance() > 0 ? std::min(nearest.within(), nearest.distance()) - error : 0;
+  if (!complete) lower = std::min(lower, search_.nearest_left());
+  const double upper = nearest.ids() ? nearest.distance() + error : distance.upper;
+  distance = {std::max(distance.lower, lower), std::min(distance.upper, upper)};
+  return {{complete, meter.spent() - kRootTests}, error};
+}
+
+// Returns whether the triangles that met last still do. A limit of tests does not ask.
+bool TriangleSearch::still_meet(const Meshes& meshes, const Budget& budget) const noexcept {
+  return met_ && !budget.has_tests() && meshes.meet(*met_);
+}
+
+// Finds a first bound, as far as the budget allows.
+template <class Visitor>
+void TriangleSearch::begin_nearest(BudgetMeter& meter, Visitor& nearest) noexcept {
+  const ClusterPose& pose = search_.step().pose;
+  TurnedBlock turned;
+  for (const auto& pair : NearestBeam(fixed_clusters_, moving_clusters_, kernels_, pose, meter)) {
+    if (!meter.allows(ClusterSearch::kClusterTests)) return;
+    meter.spend(ClusterSearch::kClusterTests);
+    const std::uint32_t block = pair.moving / kClusterWidth, lane = pair.moving % kClusterWidth;
+    kernels_.turn_nodes(moving_clusters_.bounds(0)[block], pose, turned);
+    const std::uint32_t code = kClusterWidth * pair.fixed + lane;
+    nearest.visit({turned, kClusterWidth * block, {&code, 1}});
+  }
+}
+
+std::size_t TriangleSearch::bytes_for(const SphereTree& fixed, const SphereTree& moving,
+                                      int workers) noexcept {
+  const TriangleClusters &of_fixed = parts_of(fixed).triangles->clusters,
+                         &of_moving = parts_of(moving).triangles->clusters;
+  return ClusterSearch::bytes_for(of_fixed, of_moving) + kSorted * sizeof(TrianglePair) +
+         FoundMemory::bytes() + (workers == 2 ? SharedPairs::bytes_for(of_fixed, of_moving) : 0);
+}
+
+}  // namespace ist

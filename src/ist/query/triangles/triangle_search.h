@@ -1,0 +1,113 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "ist/query/relative_pose.h"
+#include "ist/query/triangles/cluster_search.h"
+#include "ist/query/triangles/pair_list.h"
+#include "ist/query/triangles/shared_pairs.h"
+#include "ist/query/triangles/triangle_visitors.h"
+#include "ist/tree/sphere_tree.h"
+#include "simd/dispatch.h"
+
+namespace ist {
+
+struct WorkerOptions {
+  int workers;                      ///< 1 or 2
+  std::chrono::nanoseconds period;  ///< as for ResidentWorker::tick
+};
+
+/// Two bodies at a pose, for exact questions.
+struct TrianglePose {
+  const Eigen::Isometry3d& rigid;  ///< of mesh coordinates
+  const RelativePose& relative;    ///< the same, of the trees' frames
+};
+
+/// Answers questions about the triangles of two trees: a traversal of their clusters, a decision in
+/// float with a bound of its error, and exact arithmetic for what that leaves open. A second worker
+/// helps with pairs() alone.
+///
+/// Keeps witnesses, the triangles that met last and those that were nearest last. They are looked
+/// at first, unless the budget has a limit of tests. An answer to nearest() depends on the nearest
+/// ones alone: they are the same on every target, as those that met need not be.
+class TriangleSearch {
+ public:
+  /// Reserves all memory. Both trees must have triangles. Holds references to both.
+  TriangleSearch(const SphereTree& fixed, const SphereTree& moving, const Kernels& kernels,
+                 const WorkerOptions& options);
+
+  /// The end of a search, and its cost.
+  struct End {
+    bool complete;        ///< the budget did not end it
+    std::uint64_t tests;  ///< as Budget::tests counts them
+  };
+  struct Any : End {
+    bool found;
+  };
+  struct Nearest : End {
+    double error;  ///< of a distance of triangles, mesh units
+  };
+
+  /// Finds all pairs of triangles that intersect; the first of them go into `out`. pair_count()
+  /// says how many there are.
+  End pairs(const TrianglePose& pose, const Budget& budget, std::span<TrianglePair> out) noexcept;
+  [[nodiscard]] std::uint64_t pair_count() const noexcept { return list_.count(); }
+
+  /// Tests whether any pair of triangles intersects.
+  Any any(const TrianglePose& pose, const Budget& budget) noexcept;
+
+  /// Bounds the distance between the surfaces by an interval that is no wider than `tolerance`, or
+  /// twice the error, unless the budget ended the search.
+  ///
+  /// @param distance bounds it already; narrowed
+  Nearest nearest(const TrianglePose& pose, double tolerance, const Budget& budget,
+                  DistanceInterval& distance) noexcept;
+
+  void forget() noexcept {
+    met_.reset();
+    nearest_.reset();
+  }
+
+  /// Returns whether the bodies are so far apart, against their sizes, that float cannot tell their
+  /// triangles' distances from each other.
+  [[nodiscard]] bool is_too_far(const RelativePose& pose) const noexcept;
+
+  /// Returns the rounding error of a triangle that is moved in double, mesh units.
+  [[nodiscard]] double moved_error(const Eigen::Isometry3d& rigid) const noexcept;
+  /// Returns how often the second worker helped.
+  [[nodiscard]] Sharing sharing() const noexcept {
+    return shared_ ? shared_->sharing() : Sharing{};
+  }
+  /// Returns the bytes that a search of these trees reserves, with one worker or two.
+  [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed, const SphereTree& moving,
+                                             int workers) noexcept;
+
+ private:
+  struct Witness {
+    TriangleIds ids;
+    double distance;
+  };
+  [[nodiscard]] double radii() const noexcept {
+    return fixed_.bounding_radius() + moving_.bounding_radius();
+  }
+  [[nodiscard]] ClusterPose cluster_pose(const TrianglePose& pose) const noexcept;
+  [[nodiscard]] bool still_meet(const Meshes& meshes, const Budget& budget) const noexcept;
+  template <class Visitor>
+  void begin_nearest(BudgetMeter& meter, Visitor& nearest) noexcept;
+
+  const SphereTree &fixed_, &moving_;
+  const TriangleClusters &fixed_clusters_, &moving_clusters_;
+  const ClusterKernels& kernels_;
+  double largest_coordinate_, longest_edge_;
+  ClusterSearch search_;
+  PairList list_;
+  FoundMemory memory_;
+  std::optional<SharedPairs> shared_;
+  std::optional<TriangleIds> met_;
+  std::optional<Witness> nearest_;
+};
+
+}  // namespace ist

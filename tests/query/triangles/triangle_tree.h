@@ -1,0 +1,31 @@
+#pragma once
+
+#include "ist/mesh/mesh.h"
+#include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
+#include "query/query_cases.h"
+
+namespace ist::test {
+
+/// A tree with its triangles.
+[[nodiscard]] inline SphereTree tree_with_triangles(const TriangleMesh& mesh, double voxel_size) {
+  BuildOptions options;
+  options.voxel_size = voxel_size;
+  options.keep_triangles = true;
+  return build_tree(mesh, options);
+}
+
+/// A tree with its triangles, of about `cells` voxels along the mesh's largest extent.
+[[nodiscard]] inline SphereTree triangle_tree(const TriangleMesh& mesh, double cells) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& v : mesh.vertices) box.extend(v);
+  return tree_with_triangles(mesh, box.sizes().maxCoeff() / cells);
+}
+
+/// The same tree without its triangles: as it would have been built.
+[[nodiscard]] inline SphereTree without_triangles(const SphereTree& tree) {
+  return tree_from({parts_of(tree).lattice, parts_of(tree).octree, tree.orientation(),
+                    parts_of(tree).normals, parts_of(tree).bounds, std::nullopt, std::nullopt});
+}
+
+}  // namespace ist::test
