@@ -27,7 +27,7 @@ MUTANTS = [
            [("simd/triangles/cluster_step.h", "kDeterminantRounding = 0x1p-20F", "kDeterminantRounding = 0x1p-60F")],
            ["triangles_test"]),
     Mutant("open-pairs-apart", "triangles that float leaves open are apart",
-           [(TRIANGLES + "triangle_visitors.h", "if (in_time && bench_.meshes.meet(found.open[k])) add(found.open[k]);", "")],
+           [(TRIANGLES + "triangle_visitors.h", "if (in_time && context_.meshes.meet(found.open[k])) add(found.open[k]);", "")],
            ["triangles_test"]),
     Mutant("fourth-axis-within-reach", "triangles slightly within reach are apart along the fourth axis",
            [("simd/triangles/clusters-inl.h", "Set16(reach * (1 + 0x1p-20F) + 4 * error_)", "Set16(0.9F * reach)")],

@@ -17,8 +17,9 @@ class NearestPair {
  public:
   static constexpr bool kMostFirst = false, kMeasuresRest = true;
 
-  NearestPair(const Bench& bench, double tolerance, double longest_edge, double nearest) noexcept
-      : bench_(bench),
+  NearestPair(const VisitorContext& context, double tolerance, double longest_edge,
+              double nearest) noexcept
+      : context_(context),
         tolerance_(tolerance > 0 ? tolerance : 0),  // a NaN too
         longest_edge_(longest_edge),
         nearest_(nearest) {}
@@ -35,26 +36,26 @@ class NearestPair {
     return std::max(0.0, nearest_ * (1 + 0x1p-49) + 2 * error() - tolerance_);
   }
   [[nodiscard]] float reach() const noexcept {
-    return rounded_up(within() + double{bench_.step.pose.error});
+    return rounded_up(within() + double{context_.step.pose.error});
   }
   bool visit(const ClusterPairs& clusters) noexcept {
-    const float margin = rounded_up(2 * error() + double{bench_.step.pose.error});
+    const float margin = rounded_up(2 * error() + double{context_.step.pose.error});
     Reach reaches{rounded_up(nearest_) + margin, margin};
     return in_turns(
         clusters,
         [&](const ClusterPairs& rest) {
-          return bench_.kernels.near_clusters(bench_.step, rest, reaches, bench_.batch,
-                                              bench_.found);
+          return context_.kernels.near_clusters(context_.step, rest, reaches, context_.batch,
+                                                context_.found);
         },
         [&] {
           const bool in_time = measure_found();
-          bench_.found.open.count = 0;
+          context_.found.open.count = 0;
           return in_time && nearest_ > 0;
         });
   }
   void measure(TriangleIds ids) noexcept {
-    const TriangleCorners a = corners_of(bench_.meshes.fixed, ids.fixed);
-    const TriangleCorners b = bench_.meshes.moving[ids.moving];
+    const TriangleCorners a = corners_of(context_.meshes.fixed, ids.fixed);
+    const TriangleCorners b = context_.meshes.moving[ids.moving];
     const double boxes = box_distance_squared(a, b);
     const double enough = nearest_ + 2 * error();
     if (boxes > enough * enough || surely_farther(a, b, enough)) return;
@@ -69,22 +70,22 @@ class NearestPair {
   // First the pair that may be the nearest, so that few others may still be nearer. Returns false
   // where the deadline came before the end.
   bool measure_found() noexcept {
-    const FoundTriangles& found = bench_.found;
+    const FoundTriangles& found = context_.found;
     const std::size_t count = found.open.count;
     const auto first = static_cast<std::size_t>(
         std::min_element(found.squares, found.squares + count) - found.squares);
     if (count > 0) measure(found.open[first]);
     std::size_t measured = 0;
     for (std::size_t k = 0; k < count && nearest_ > 0; ++k) {
-      const double enough = nearest_ + 2 * error() + double{bench_.step.pose.error};
+      const double enough = nearest_ + 2 * error() + double{context_.step.pose.error};
       if (k == first || double{found.squares[k]} > enough * enough) continue;
-      if (bench_.is_late(measured++)) return false;
+      if (context_.is_late(measured++)) return false;
       measure(found.open[k]);
     }
     return true;
   }
 
-  Bench bench_;
+  VisitorContext context_;
   double tolerance_, longest_edge_, nearest_;
   std::optional<TriangleIds> ids_;
 };

@@ -48,12 +48,12 @@ class FoundMemory {
   std::vector<float> squares_;
 };
 
-/// The tools of a visitor: the bodies at a pose, the kernels, and the memory for their findings. A
-/// limit of tests does not count the pairs that exact arithmetic decides or measures, 0.1 to 2 µs
-/// each. The clock is read before every eighth.
-struct Bench {
-  Bench(const ClusterStep& of, const ClusterKernels& by, const Meshes& bodies, FoundMemory& memory,
-        const Budget& within) noexcept
+/// The context of a visitor: the bodies at a pose, the kernels, and the memory for what they find.
+/// Exact decisions and measurements are not counted as tests: a pair takes 0.1 to 2 µs. The clock
+/// is read before every eighth.
+struct VisitorContext {
+  VisitorContext(const ClusterStep& of, const ClusterKernels& by, const Meshes& bodies,
+                 FoundMemory& memory, const Budget& within) noexcept
       : step(of),
         kernels(by),
         meshes(bodies),
@@ -92,39 +92,41 @@ class AllPairs {
  public:
   static constexpr bool kMostFirst = false, kMeasuresRest = false;
 
-  AllPairs(const Bench& bench, PairList& list) noexcept : bench_(bench), list_(list) {}
+  AllPairs(const VisitorContext& context, PairList& list) noexcept
+      : context_(context), list_(list) {}
 
-  [[nodiscard]] float reach() const noexcept { return bench_.step.pose.error; }
+  [[nodiscard]] float reach() const noexcept { return context_.step.pose.error; }
   bool visit(const ClusterPairs& clusters) noexcept {
     return in_turns(
         clusters,
         [&](const ClusterPairs& rest) {
-          return bench_.kernels.meet_clusters(bench_.step, rest, bench_.batch, bench_.found);
+          return context_.kernels.meet_clusters(context_.step, rest, context_.batch,
+                                                context_.found);
         },
-        [&] { return bench_.found.has_room() || add_found(); });
+        [&] { return context_.found.has_room() || add_found(); });
   }
   /// Decides and adds the pairs that are left. Returns false if the deadline came before.
   bool finish() noexcept {
-    const bool in_time = bench_.found.has_room() || add_found();
-    bench_.kernels.decide_triangles(bench_.batch, bench_.found);
+    const bool in_time = context_.found.has_room() || add_found();
+    context_.kernels.decide_triangles(context_.batch, context_.found);
     return add_found() && in_time;
   }
 
  private:
   bool add_found() noexcept {
-    FoundTriangles& found = bench_.found;
+    FoundTriangles& found = context_.found;
     for (std::size_t k = 0; k < found.certain.count; ++k) add(found.certain[k]);
     bool in_time = true;
     for (std::size_t k = 0; k < found.open.count && in_time; ++k) {
-      in_time = !bench_.is_late(k);
-      if (in_time && bench_.meshes.meet(found.open[k])) add(found.open[k]);
+      in_time = !context_.is_late(k);
+      if (in_time && context_.meshes.meet(found.open[k])) add(found.open[k]);
     }
     found.certain.count = found.open.count = 0;
     return in_time;
   }
   void add(TriangleIds ids) noexcept { list_.add({ids.fixed, ids.moving}); }
 
-  Bench bench_;
+  VisitorContext context_;
   PairList& list_;
 };
 
@@ -133,17 +135,18 @@ class AnyPair {
  public:
   static constexpr bool kMostFirst = true, kMeasuresRest = false;
 
-  explicit AnyPair(const Bench& bench) noexcept : bench_(bench) {}
+  explicit AnyPair(const VisitorContext& context) noexcept : context_(context) {}
 
   [[nodiscard]] const std::optional<TriangleIds>& found() const noexcept { return found_; }
-  [[nodiscard]] float reach() const noexcept { return bench_.step.pose.error; }
+  [[nodiscard]] float reach() const noexcept { return context_.step.pose.error; }
   bool visit(const ClusterPairs& clusters) noexcept {
     return in_turns(
         clusters,
         [&](const ClusterPairs& rest) {
           const std::size_t done =
-              bench_.kernels.meet_clusters(bench_.step, rest, bench_.batch, bench_.found);
-          if (bench_.batch.count > 0) bench_.kernels.decide_triangles(bench_.batch, bench_.found);
+              context_.kernels.meet_clusters(context_.step, rest, context_.batch, context_.found);
+          if (context_.batch.count > 0)
+            context_.kernels.decide_triangles(context_.batch, context_.found);
           return done;
         },
         [&] { return look() && !found_; });
@@ -152,18 +155,18 @@ class AnyPair {
  private:
   // Returns false if the deadline came before the end.
   bool look() noexcept {
-    FoundTriangles& found = bench_.found;
+    FoundTriangles& found = context_.found;
     if (found.certain.count > 0) found_ = found.certain[0];
     bool in_time = true;
     for (std::size_t k = 0; k < found.open.count && !found_ && in_time; ++k) {
-      in_time = !bench_.is_late(k);
-      if (in_time && bench_.meshes.meet(found.open[k])) found_ = found.open[k];
+      in_time = !context_.is_late(k);
+      if (in_time && context_.meshes.meet(found.open[k])) found_ = found.open[k];
     }
     found.certain.count = found.open.count = 0;
     return in_time;
   }
 
-  Bench bench_;
+  VisitorContext context_;
   std::optional<TriangleIds> found_;
 };
 
