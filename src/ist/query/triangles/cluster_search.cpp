@@ -56,7 +56,7 @@ bool ClusterSearch::find_near(Step& step, std::uint32_t lanes, int fixed_level, 
   }
   if (!allowed) std::fill_n(step.bits.data(), nodes.count, (1U << lanes) - 1);  // all are left
   found = {step.near.data(), kernels_.list_lanes(nodes, step.bits.data(), step.near.data())};
-  if (!allowed) leave(step, fixed_level, found);
+  if (!allowed) note_untested(step, fixed_level, found);
   return allowed;
 }
 
@@ -93,8 +93,8 @@ ClusterSearch::Groups ClusterSearch::by_lanes(LaneNodes pairs, bool most_first) 
   return groups;
 }
 
-// Notes how near the balls of some lanes and fixed nodes are.
-void ClusterSearch::leave(const Step& step, int fixed_level, LaneNodes pairs) noexcept {
+// Notes the distances of pairs of nodes that the search does not test any more.
+void ClusterSearch::note_untested(const Step& step, int fixed_level, LaneNodes pairs) noexcept {
   if (!measures_rest_) return;
   const TurnedBlock& from = step.turned;
   for (std::size_t k = 0; k < pairs.count; ++k) {

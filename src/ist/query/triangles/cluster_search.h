@@ -102,7 +102,7 @@ class ClusterSearch {
   bool find_children(Step& step, int level, LaneNodes parents, float reach, BudgetMeter& meter,
                      LaneNodes& found) const noexcept;
   static Groups by_lanes(LaneNodes pairs, bool most_first) noexcept;
-  void leave(const Step& step, int fixed_level, LaneNodes pairs) noexcept;
+  void note_untested(const Step& step, int fixed_level, LaneNodes pairs) noexcept;
 
   const TriangleClusters &fixed_, &moving_;
   const ClusterKernels& kernels_;
@@ -125,7 +125,7 @@ bool ClusterSearch::run(BudgetMeter& meter, Visitor& visitor) noexcept {
   while (level > moving_.root_level()) {
     LaneNodes children{};
     if (!find_children(top, --level, nodes, visitor.reach(), meter, children)) {
-      leave(top, level + 1, nodes);
+      note_untested(top, level + 1, nodes);
       return false;
     }
     std::copy_n(children.codes, children.count, top.near.begin());
@@ -158,7 +158,7 @@ bool ClusterSearch::descend(int moving_level, std::uint32_t moving, int fixed_le
                              near.part(before + first.count, near.count)};
   for (std::size_t k = 0; k < std::size(parts); ++k) {
     if (go_on(parts[k])) continue;
-    while (++k < std::size(parts)) leave(step, fixed_level, parts[k]);
+    while (++k < std::size(parts)) note_untested(step, fixed_level, parts[k]);
     return false;
   }
   return true;
@@ -173,7 +173,7 @@ bool ClusterSearch::go_deeper(Step& step, int moving_level, std::uint32_t first,
     LaneNodes deeper{};
     --fixed_level;
     if (!find_children(step, fixed_level, pairs, visitor.reach(), meter, deeper)) {
-      leave(step, fixed_level + 1, pairs);
+      note_untested(step, fixed_level + 1, pairs);
       return false;
     }
     pairs = deeper;
@@ -190,7 +190,7 @@ bool ClusterSearch::go_deeper(Step& step, int moving_level, std::uint32_t first,
     if (descend(moving_level - 1, first + group.lane(0), fixed_level, group, meter, visitor)) {
       continue;
     }
-    while (++k < groups.count) leave(step, fixed_level, groups.pairs[k]);
+    while (++k < groups.count) note_untested(step, fixed_level, groups.pairs[k]);
     return false;
   }
   return true;
@@ -211,7 +211,7 @@ bool ClusterSearch::compare(const ClusterPairs& clusters, BudgetMeter& meter,
       goes_on = visitor.visit({clusters.lanes, clusters.moving, part});
     }
     if (!goes_on) {
-      leave(step_at(1), 0, all.part(k, all.count));
+      note_untested(step_at(1), 0, all.part(k, all.count));
       return false;
     }
   }

@@ -19,7 +19,7 @@ WorldPair by_roots(const PairAtPose& at) noexcept {
 }
 
 // Counts the test of the roots of a pair that a question or its budget left out.
-void leave(WorldQuestion::Kind kind, WorldPair& pair) noexcept {
+void fill_unasked(WorldQuestion::Kind kind, WorldPair& pair) noexcept {
   if (pair.status == QueryStatus::kInvalidPose) return;
   pair.sphere_tests = 1;
   if (kind == WorldQuestion::kDistance) pair.narrowest = pair.roots.upper - pair.roots.lower;
@@ -126,7 +126,7 @@ WorldAnswer World::ask(const WorldQuestion& question, const Budget& budget) noex
     }
     pair.first = written;
     if (at.status != QueryStatus::kDone || budget.is_past()) {
-      leave(question.kind, pair);
+      fill_unasked(question.kind, pair);
     } else {
       WorldState::PairMemory& memory = s.memory(at);
       ask_query(question, memory.query, memory.manifold, to_isometry(at.pose),
@@ -159,7 +159,7 @@ WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
   const std::span<WorldPair> pairs = std::span(s.answers.nearest).first(candidates.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     pairs[k] = by_roots(s.look(candidates[k].bodies));
-    leave(WorldQuestion::kDistance, pairs[k]);
+    fill_unasked(WorldQuestion::kDistance, pairs[k]);
     upper = std::min(upper, pairs[k].roots.upper);
   }
   std::sort(pairs.begin(), pairs.end(), [](const WorldPair& a, const WorldPair& b) {
