@@ -89,14 +89,14 @@ TEST(RoundUpForPeople, GivesThreeDigitsNeverLessAndHardlyMore) {
   test::Random random(2);
   for (int i = 0; i < test::samples(10'000); ++i) {
     const double size = std::ldexp(random.uniform(0.5, 1), static_cast<int>(random.below(80)) - 40);
-    const double rounded = round_up_for_people(size);
+    const double rounded = round_to_nice_number(size);
     EXPECT_GE(rounded, size);
     EXPECT_LE(rounded, 1.0101 * size);
-    EXPECT_EQ(round_up_for_people(rounded), rounded);
+    EXPECT_EQ(round_to_nice_number(rounded), rounded);
   }
-  EXPECT_EQ(round_up_for_people(0.2), 0.2);
-  EXPECT_EQ(round_up_for_people(0.2001), 0.201);
-  EXPECT_EQ(round_up_for_people(9.999), 10.0);
+  EXPECT_EQ(round_to_nice_number(0.2), 0.2);
+  EXPECT_EQ(round_to_nice_number(0.2001), 0.201);
+  EXPECT_EQ(round_to_nice_number(9.999), 10.0);
 }
 
 TEST(Lattice, ConvertsBetweenItsUnitsAndTheMeshs) {

@@ -33,7 +33,7 @@ double cells_of(double extent, double voxel_size) {
 
 }  // namespace
 
-double round_up_for_people(double size, int digits) {
+double round_to_nice_number(double size, int digits) {
   const std::string text = fmt::format("{:.{}e}", size, digits - 1);
   const double rounded = number(text);
   if (rounded >= size) return rounded;
@@ -71,7 +71,7 @@ std::optional<Error> lattice_flaw(const Eigen::Vector3d& box_min, const Eigen::V
                  fmt::format("voxel size {} needs {:.0f} voxels along the largest extent of {} "
                              "units, and the limit is {}: the smallest size for this mesh is {}",
                              voxel_size, cells, extent, Lattice::kMaxCells,
-                             round_up_for_people(extent / Lattice::kMaxCells)));
+                             round_to_nice_number(extent / Lattice::kMaxCells)));
   }
   return std::nullopt;
 }

@@ -73,6 +73,6 @@ struct Lattice {
 
 /// Returns `size` rounded up to some significant digits, 2 or more, for the remedy in an error
 /// text.
-[[nodiscard]] double round_up_for_people(double size, int digits = 3);
+[[nodiscard]] double round_to_nice_number(double size, int digits = 3);
 
 }  // namespace ist

@@ -292,8 +292,8 @@ double expected_size(const Memory& memory, double least, double most) {
     const double middle = std::sqrt(too_small * enough);
     (fits(middle) ? enough : too_small) = middle;
   }
-  double named = round_up_for_people(enough, 2);
-  while (!fits(named)) named = round_up_for_people(1.01 * named, 2);
+  double named = round_to_nice_number(enough, 2);
+  while (!fits(named)) named = round_to_nice_number(1.01 * named, 2);
   const Counts expected = memory.expected(options.voxel_size);
   const std::string needs =
       expected.pairs > kMaxCount
