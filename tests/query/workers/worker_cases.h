@@ -53,11 +53,11 @@ struct Sum {
   static void help(void* context) noexcept {
     auto& sum = *static_cast<Sum*>(context);
     sum.entered = true;
-    while (const auto chunk = sum.board.claim_back(sum.epoch)) {
+    while (const auto chunk = sum.queue.claim_back(sum.epoch)) {
       hand_over(HandOver::kClaimed);
       sum.parts[*chunk] = part(*chunk);
       hand_over(HandOver::kWorked);
-      if (!sum.board.complete(sum.epoch, *chunk)) return;
+      if (!sum.queue.complete(sum.epoch, *chunk)) return;
     }
   }
   static std::uint64_t part(std::size_t chunk) { return chunk * chunk; }
@@ -70,14 +70,14 @@ struct Sum {
   std::uint64_t with(ResidentWorker& worker, const Meet& meet) {
     helped = false;
     if (job.busy()) return without();
-    epoch = board.open(kChunks);
+    epoch = queue.open(kChunks);
     entered = false;
     const bool offered = worker.offer(job);
     if (offered) meet();
     std::array<std::uint64_t, kChunks> own{};
-    while (const auto chunk = board.claim_front()) own[*chunk] = part(*chunk);
-    for (std::size_t i = board.close(); i < kChunks; ++i)
-      own[i] = board.collect(i, 200us) ? parts[i] : part(i);
+    while (const auto chunk = queue.claim_front()) own[*chunk] = part(*chunk);
+    for (std::size_t i = queue.close(); i < kChunks; ++i)
+      own[i] = queue.collect(i, 200us) ? parts[i] : part(i);
     helped = offered && !worker.retract(job);
     return std::accumulate(own.begin(), own.end(), std::uint64_t{0});
   }
@@ -96,7 +96,7 @@ struct Sum {
     return sum;
   }
 
-  SplitQueue board{kChunks};
+  SplitQueue queue{kChunks};
   std::array<std::uint64_t, kChunks> parts{};
   std::uint64_t epoch = 0;
   bool helped = false;  // the worker entered the last one
