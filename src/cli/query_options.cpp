@@ -16,7 +16,7 @@ using namespace answers;
 
 namespace {
 
-void add_engine_options(CLI::App& command, QueryOptions& options) {
+void add_engine_options(CLI::App& command, QuestionOptions& options) {
   const std::string group = "Engine, and its times";
   command
       .add_option("--spheres", options.spheres,
@@ -66,7 +66,7 @@ void add_engine_options(CLI::App& command, QueryOptions& options) {
 
 }  // namespace
 
-void QueryOptions::check() const {
+void QuestionOptions::check() const {
   for (const std::string& name : engines) {
     refuse_if(std::count(engines.begin(), engines.end(), name) > 1, "--engine",
               fmt::format("{} is named twice", name));
@@ -85,24 +85,24 @@ void QueryOptions::check() const {
             "goes with --engine simd: the reference finds all leaf pairs");
 }
 
-bool QueryOptions::asks_voxels() const {
+bool QuestionOptions::asks_voxels() const {
   const bool engine = timing || repeat > 1 || verify || questions.max_tests || workers > 1 ||
                       !spheres.empty() || !target.empty() || !engines.empty();
   return engine || !contacts.empty() || files.voxel_size;
 }
 
-std::vector<std::string> QueryOptions::asked_engines() const {
+std::vector<std::string> QuestionOptions::asked_engines() const {
   return engines.empty() ? std::vector<std::string>{std::string(kEngineNames.front())} : engines;
 }
 
-BodyFiles QueryOptions::body_files() const {
+BodyFiles QuestionOptions::body_files() const {
   BodyFiles named = files;
   if (!spheres.empty()) named.policy = sphere_policy(spheres);
   if (!asks_voxels()) named.voxels = BodyFiles::Voxels::kNeeded;
   return named;
 }
 
-void add_query_options(CLI::App& command, QueryOptions& options) {
+void add_query_options(CLI::App& command, QuestionOptions& options) {
   options.subcommand = command.get_name();
   command.add_option("FIXED", options.files.fixed, "mesh or tree of the body that stays")
       ->type_name("FILE")

@@ -12,7 +12,7 @@
 namespace ist::cli {
 
 /// The options of collide and approach, but for the poses.
-struct QueryOptions {
+struct QuestionOptions {
   std::string subcommand;  ///< whose options they are
   BodyFiles files;
   answers::Questions questions;
@@ -41,6 +41,6 @@ struct QueryOptions {
 };
 
 /// Adds the options of a query to a subcommand.
-void add_query_options(CLI::App& command, QueryOptions& options);
+void add_query_options(CLI::App& command, QuestionOptions& options);
 
 }  // namespace ist::cli

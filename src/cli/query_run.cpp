@@ -89,7 +89,7 @@ void verify(Engines& engines, const Bodies& bodies, const std::vector<AskedPose>
 }  // namespace
 
 Meeting run_queries(const Bodies& bodies, const std::vector<AskedPose>& poses,
-                    const QueryOptions& options) {
+                    const QuestionOptions& options) {
   Examiner examiner(bodies, options.questions, options.target);
   Engines engines;
   for (const std::string& name : options.asked_engines()) {

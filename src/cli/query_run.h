@@ -23,7 +23,7 @@ struct AskedPose {
 /// printed or the file appears. Returns how the bodies meet where they do so most certainly.
 [[nodiscard]] answers::Meeting run_queries(const answers::Bodies& bodies,
                                            const std::vector<AskedPose>& poses,
-                                           const QueryOptions& options);
+                                           const QuestionOptions& options);
 
 /// Throws a Failure of kTouching, which says how the bodies meet; of kFailed if that is unknown;
 /// nothing if they are apart.

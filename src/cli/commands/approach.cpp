@@ -32,7 +32,7 @@ constexpr double kDefaultSteps = 20;
 constexpr double kContactTolerance = 1e-5;
 
 struct ApproachArguments {
-  QueryOptions query;
+  QuestionOptions query;
   PoseOptions pose;
   std::string axis;
   double from = 0, to = 0;
@@ -159,7 +159,7 @@ void tell_first_contact(const Bodies& bodies, const Path& path, const ApproachAr
 }
 
 void run(const ApproachArguments& options) {
-  const QueryOptions& query = options.query;
+  const QuestionOptions& query = options.query;
   query.check();
   refuse_to_overwrite(query.contacts, {query.files.fixed, query.files.moving, options.pose.matrix});
   const Path path = path_of(options);

@@ -16,12 +16,12 @@ using namespace answers;
 namespace {
 
 struct CollideArguments {
-  QueryOptions query;
+  QuestionOptions query;
   PoseOptions pose;
 };
 
 void run(const CollideArguments& options) {
-  const QueryOptions& query = options.query;
+  const QuestionOptions& query = options.query;
   query.check();
   refuse_to_overwrite(query.contacts, {query.files.fixed, query.files.moving, options.pose.matrix,
                                        options.pose.poses});

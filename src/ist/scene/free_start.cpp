@@ -29,7 +29,7 @@ void FreeStart::add(const SphereTree& fixed, const SphereTree& held, const Trian
 
 std::optional<FreeStart::Flaw> FreeStart::flaw(double distance) noexcept {
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    Pair& pair = pairs_[i];
+    CheckedPair& pair = pairs_[i];
     Eigen::Isometry3d pose = pair.pose.isometry();
     pose.translation() += distance * pair.axis;
     if (const IntersectionResult found = pair.query.intersects(pose);

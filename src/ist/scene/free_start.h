@@ -40,14 +40,14 @@ class FreeStart {
   [[nodiscard]] std::optional<double> open_distance() noexcept;
 
  private:
-  struct Pair {
+  struct CheckedPair {
     Query query;
     std::optional<InsideTest> inside;
     Placement pose;  // maps held to fixed mesh coordinates, mesh units
     Eigen::Vector3d axis;
   };
 
-  std::vector<Pair> pairs_;
+  std::vector<CheckedPair> pairs_;
   double voxel_ = 0, farthest_ = 0;
 };
 

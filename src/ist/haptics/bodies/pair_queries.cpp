@@ -48,17 +48,17 @@ void PairQueries::add(const HandPair& pair, std::unique_ptr<ToolContactQuery> qu
 
 std::size_t PairQueries::bytes() const noexcept {
   std::size_t bytes = 0;
-  for (const Pair& pair : pairs_) bytes += pair.query->bytes();
+  for (const PairQuery& pair : pairs_) bytes += pair.query->bytes();
   return bytes;
 }
 
 void PairQueries::place(const HandBodies& bodies) noexcept {
-  for (Pair& pair : pairs_) {
+  for (PairQuery& pair : pairs_) {
     pair.query->place(bodies.frames(pair.bodies.fixed, pair.bodies.held));
   }
 }
 
-QueryResult PairQueries::ask(Pair& pair, const Placement& tool, const Budget& budget,
+QueryResult PairQueries::ask(PairQuery& pair, const Placement& tool, const Budget& budget,
                              ToolContacts& contacts) noexcept {
   const auto number = static_cast<std::size_t>(&pair - pairs_.data());
   const QueryResult result = pair.query->find(tool, budget, contacts, number);
@@ -76,14 +76,14 @@ std::optional<QueryResult> PairQueries::find(const HandBodies& bodies, const Pla
   QueryResult all{.found = Found::kClear};
   std::size_t asked = 0;
   Need later{0, 0};
-  for (const Pair& pair : pairs_) {
+  for (const PairQuery& pair : pairs_) {
     if (!bodies.may_touch(pair.bodies.fixed, pair.bodies.held)) continue;
     ++asked;
     later.tests += pair.need.tests;
     later.nanoseconds += pair.need.nanoseconds;
   }
   Budget rest = budget;
-  for (Pair& pair : pairs_) {
+  for (PairQuery& pair : pairs_) {
     if (!bodies.may_touch(pair.bodies.fixed, pair.bodies.held)) continue;
     if (asked == 1) {  // nothing to divide: no look at the clock
       join(all, ask(pair, tool, rest, contacts));

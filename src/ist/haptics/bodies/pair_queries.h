@@ -56,16 +56,16 @@ class PairQueries {
   struct Need {
     double tests = 1, nanoseconds = 1;
   };
-  struct Pair {
+  struct PairQuery {
     HandPair bodies;
     std::unique_ptr<ToolContactQuery> query;
     Need need;
   };
 
-  [[nodiscard]] QueryResult ask(Pair& pair, const Placement& tool, const Budget& budget,
+  [[nodiscard]] QueryResult ask(PairQuery& pair, const Placement& tool, const Budget& budget,
                                 ToolContacts& contacts) noexcept;
 
-  std::vector<Pair> pairs_;
+  std::vector<PairQuery> pairs_;
   std::vector<HandPair> far_;
 };
 
