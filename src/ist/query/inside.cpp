@@ -57,14 +57,14 @@ InsideResult Query::inside(const Eigen::Isometry3d& pose) {
   detail::QueryState& s = *state_;
   const detail::Use use(s);
   if (!use) return {.status = QueryStatus::kBusy};
-  if (!s.exact) return {.status = QueryStatus::kNoTriangles};
+  if (!s.triangles) return {.status = QueryStatus::kNoTriangles};
   const std::optional<detail::Approach> bodies = s.approach(pose, s.triangle_error(pose));
   const double off = rotation_error(pose);
   if (!bodies) return {.status = QueryStatus::kInvalidPose, .rotation_error = off};
   InsideResult result{.rotation_error = off};
   if (!bodies->roots.overlap) return result;
   const Eigen::Isometry3d rigid = *project_to_rigid(pose);
-  if (s.exact->any({rigid, bodies->relative}, {}).found) return result;
+  if (s.triangles->any({rigid, bodies->relative}, {}).found) return result;
   result.inside = inside_of(solid_of(*parts_of(s.fixed).triangles),
                             solid_of(*parts_of(s.moving).triangles), rigid);
   return result;
