@@ -78,7 +78,7 @@ class Sources(unittest.TestCase):
                              ("loop_bench", ["src/ist/scene", "src/ist/haptics"]),
                              ("deadline_bench", ["tests/support/conformal.cpp", "src/ist/query/traversal", "simd"]),
                              ("hardware_bench", ["src/hardware/include/ist/hardware", "tests/hardware/pair_walk.h"]),
-                             ("peers_bench", ["src/ist/measure", "src/ist/query/exact"]), ("stability_border.sh", ["src/ist/haptics"])):
+                             ("peers_bench", ["src/ist/measure", "src/ist/query/triangles"]), ("stability_border.sh", ["src/ist/haptics"])):
             self.assertEqual(set(rooms) - set(figures.sources_of(maker)), set(), maker)
         self.assertNotIn("src/ist/haptics", figures.sources_of("ablation_bench"))
         self.assertNotIn("src/ist/mesh/format", figures.sources_of("peers_bench"))
