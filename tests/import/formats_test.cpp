@@ -138,6 +138,13 @@ TEST(ImportFormats, Amf) {
             "not-a-mesh: 'a' is no number; export the mesh again");
 }
 
+TEST(ImportFormats, MayBeginWithAByteOrderMark) {
+  const std::string mark = "\xEF\xBB\xBF";
+  expect_box(read_as("a.dae", mark + test::box_dae("", "Y_UP")), LengthUnit::kMetre, {0, 0, 0},
+             {1, 2, 3});
+  expect_box(read_as("a.ac", mark + test::box_ac()), LengthUnit::kUnknown, {1, 2, 3}, {2, 4, 6});
+}
+
 TEST(ImportFormats, ColladaThatAssimpWouldMisreadIsRefused) {
   const std::string box = test::box_dae("", "Y_UP");
   EXPECT_EQ(refusal_as("a.dae", test::replaced(box, "count=\"24\">0", "count=\"24\">0,5")),

@@ -23,6 +23,8 @@ bool begins_with_element(std::string_view content, std::string_view element) {
 }
 
 const OtherFormat* other_format(std::string_view content) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (content.starts_with(kByteOrderMark)) content.remove_prefix(kByteOrderMark.size());
   static constexpr OtherFormat kFormats[] = {
       {"glTF", "glTF", "glb"},
       {"PK\3\4", "3MF", "3mf"},
