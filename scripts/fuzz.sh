@@ -4,9 +4,9 @@
 #
 #   scripts/fuzz.sh [TARGET…] [--seconds N]    N seconds each, by default 60
 #
-# Targets are the folders of tests/fuzz/corpus. What they find out is kept in build/fuzz/corpus and
-# begun with the next time; an input that should be replayed in every run goes to tests/fuzz/corpus,
-# named OUTCOME.WHAT.
+# Each tests/fuzz/corpus/TARGET.zip is the corpus of a target. The inputs that a fuzzer adds are kept in build/fuzz/corpus;
+# the next run begins with them. This command adds an input to the corpus, and every run of the tests replays it:
+#   python3 tests/fuzz/add_input.py TARGET OUTCOME.WHAT FILE
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=60
@@ -20,12 +20,12 @@ while [ $# -gt 0 ]; do
     -h | --help) sed -n '2,9s/^# \{0,1\}//p' "$0"; exit 0 ;;
     -*) echo "fuzz: unknown option $1; see --help" >&2; exit 2 ;;
     *)
-      [ -d "tests/fuzz/corpus/$1" ] || { echo "fuzz: there is no target $1" >&2; exit 2; }
+      [ -f "tests/fuzz/corpus/$1.zip" ] || { echo "fuzz: there is no target $1" >&2; exit 2; }
       targets+=("$1")
       shift ;;
   esac
 done
-[ ${#targets[@]} -gt 0 ] || mapfile -t targets < <(ls tests/fuzz/corpus)
+[ ${#targets[@]} -gt 0 ] || mapfile -t targets < <(basename -s .zip tests/fuzz/corpus/*.zip)
 
 scripts/setup.sh --tests --fuzz
 echo "== preset fuzz"
@@ -49,7 +49,7 @@ begin() {  # a target's fuzzer, into its log
   TMPDIR=$memory UBSAN_OPTIONS=print_stacktrace=1 \
     "build/fuzz/tests/fuzz/fuzz_$1" -max_total_time="$seconds" -max_len=4096 -timeout=10 \
     -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="build/fuzz/findings/$1-" \
-    "$kept" "tests/fuzz/corpus/$1" >"build/fuzz/$1.log" 2>&1 &
+    "$kept" "build/fuzz/tests/fuzz/corpus/$1" >"build/fuzz/$1.log" 2>&1 &
 }
 
 end() {  # a target, and its process

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "accuracy/sections.h"
-#include "query/contacts/form_errors.h"
+#include "query/contacts/closed_forms.h"
 
 namespace ist::bench {
 namespace {

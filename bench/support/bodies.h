@@ -6,7 +6,7 @@
 
 #include "ist/mesh/mesh.h"
 #include "ist/tree/sphere_tree.h"
-#include "support/closing.h"
+#include "support/rigid_pose.h"
 
 namespace ist::bench {
 

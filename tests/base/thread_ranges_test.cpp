@@ -16,7 +16,6 @@
 
 #include "ist/base/parallel.h"
 #include "support/effort.h"
-#include "support/skip.h"
 
 namespace ist {
 namespace {

@@ -9,8 +9,8 @@
 #include "capi/c_bodies.h"
 #include "ist/capi/ist_world.h"
 #include "query/quiet/allocations.h"
+#include "support/effort.h"
 #include "support/shapes.h"
-#include "support/skip.h"
 #include "support/system_calls.h"
 #include "support/temp_dir.h"
 

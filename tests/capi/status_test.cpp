@@ -2,10 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <new>
 #include <set>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include "capi/c_bodies.h"
+#include "ist/base/error.h"
+#include "ist/capi/guard.h"
 
 namespace ist::test {
 namespace {
@@ -47,6 +52,49 @@ TEST(CStatus, HasNamesThatDiffer) {
 TEST(CVersion, IsTheHeadersAndTheProjects) {
   EXPECT_EQ(ist_abi_version(), std::uint32_t{IST_ABI_VERSION});
   EXPECT_STREQ(ist_version_string(), IST_VERSION);
+}
+
+// No exception leaves a C function; each becomes an error code.
+
+template <typename Exception>
+std::string thrown(const Exception& exception) {
+  return name(capi::guarded("f", [&](const capi::Call&) -> ist_status { throw exception; }));
+}
+
+TEST(CGuard, TurnsEveryExceptionIntoACode) {
+  EXPECT_EQ(thrown(std::bad_alloc()), "out-of-memory");
+  EXPECT_EQ(thrown(std::bad_array_new_length()), "out-of-memory");
+  EXPECT_EQ(thrown(std::length_error("too long")), "out-of-memory");
+  EXPECT_EQ(thrown(std::system_error(std::make_error_code(std::errc::io_error))), "system-error");
+  EXPECT_EQ(thrown(std::logic_error("a bug")), "internal-error");
+  EXPECT_STREQ(ist_last_error_message(), "f: a bug");
+  EXPECT_EQ(thrown(7), "internal-error");
+  EXPECT_EQ(thrown(std::string("text")), "internal-error");
+}
+
+TEST(CGuard, KeepsAnErrorsCodeAndText) {
+  for (int i = 0; to_string(static_cast<ErrorCode>(i)) != std::string("unknown"); ++i) {
+    const auto code = static_cast<ErrorCode>(i);
+    EXPECT_EQ(thrown(Error(code, "place: cause: remedy")), to_string(code));
+    EXPECT_STREQ(ist_last_error_message(), "f: place: cause: remedy");
+  }
+}
+
+TEST(CGuard, LeavesTheMessageAloneWhereNothingFails) {
+  EXPECT_EQ(thrown(std::logic_error("a bug")), "internal-error");
+  EXPECT_EQ(capi::guarded("g", [](const capi::Call&) -> ist_status { return IST_OK; }), IST_OK);
+  EXPECT_STREQ(ist_last_error_message(), "f: a bug");
+}
+
+TEST(CGuard, CutsAMessageThatIsTooLong) {
+  const std::string text(10'000, 'x');
+  EXPECT_EQ(thrown(std::logic_error(text)), "internal-error");
+  EXPECT_EQ(std::string(ist_last_error_message()), "f: " + text.substr(0, 508));
+  const auto failing = [&](const capi::Call& call) {
+    return call.fail(IST_NOT_A_MESH, "{}", text);
+  };
+  EXPECT_EQ(name(capi::guarded("function", failing)), "not-a-mesh");
+  EXPECT_EQ(std::string(ist_last_error_message()), "function: " + text.substr(0, 501));
 }
 
 }  // namespace

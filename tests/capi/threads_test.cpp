@@ -1,18 +1,21 @@
-// Simultaneous calls: any calls with different handles; calls with the same handle give at worst an
-// error code.
-
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <barrier>
+#include <chrono>
 #include <thread>
 #include <vector>
 
 #include "capi/c_bodies.h"
+#include "ist/base/cancellation.h"
+#include "ist/capi/follower.h"
 #include "support/shapes.h"
 
 namespace ist::test {
 namespace {
+
+// Simultaneous calls: any calls with different handles; calls with the same handle give at worst an
+// error code.
 
 constexpr int kThreads = 4;
 
@@ -102,6 +105,26 @@ TEST(CThread, IsToldWhereItsQueryIsBusy) {
   });
   EXPECT_GT(answered, 0);
   EXPECT_EQ(name(ist_query_free(query)), "ok");
+}
+
+using namespace std::chrono_literals;
+
+// Ends a call at its second report.
+std::int32_t stop_at_the_second(void* user, double /*part*/) {
+  return ++*static_cast<int*>(user) == 2 ? 1 : 0;
+}
+
+TEST(CFollower, EndsWorkAtItsNextCancellationPoint) {
+  int reports = 0;
+  const capi::Follower follower = sized<ist_progress>({0, stop_at_the_second, &reports});
+  // The work ends only by the stop.
+  EXPECT_FALSE(capi::followed(follower, [](const Proceed& /*unasked*/) {
+    for (;;) {
+      cancellation_point();
+      std::this_thread::sleep_for(1ms);
+    }
+  }));
+  EXPECT_EQ(reports, 2);
 }
 
 }  // namespace

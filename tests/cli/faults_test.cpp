@@ -16,11 +16,10 @@
 #include "ist/tree/sphere_tree.h"
 #include "support/effort.h"
 #include "support/errors.h"
-#include "support/memory_file.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
-#include "support/skip.h"
 #include "support/stability.h"
+#include "support/temp_dir.h"
 
 namespace ist::test {
 namespace {

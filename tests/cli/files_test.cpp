@@ -8,7 +8,7 @@
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 #include "support/effort.h"
-#include "support/ply_file.h"
+#include "support/mesh_files.h"
 #include "support/shapes.h"
 
 namespace ist::test {

@@ -8,9 +8,8 @@
 
 #include "cli/occlusion_case.h"
 #include "support/effort.h"
-#include "support/ply_file.h"
+#include "support/mesh_files.h"
 #include "support/shapes.h"
-#include "support/skip.h"
 #include "support/temp_dir.h"
 
 namespace ist::test {

@@ -8,7 +8,6 @@
 #include "simd/dispatch.h"
 #include "support/effort.h"
 #include "support/shapes.h"
-#include "support/skip.h"
 
 namespace ist::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "cli/sweep_case.h"
-#include "support/skip.h"
+#include "support/effort.h"
 #include "support/stability.h"
 
 namespace ist::test {

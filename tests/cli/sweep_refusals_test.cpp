@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "cli/sweep_case.h"
-#include "support/skip.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {

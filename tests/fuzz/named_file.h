@@ -4,7 +4,6 @@
 #include <initializer_list>
 #include <string_view>
 
-#include "support/memory_file.h"
 #include "support/temp_dir.h"
 
 namespace ist::test {

@@ -6,7 +6,7 @@
 #include "fuzz/fuzz_target.h"
 #include "ist/base/error.h"
 #include "ist/base/pose.h"
-#include "support/memory_file.h"
+#include "support/temp_dir.h"
 
 namespace ist::test {
 

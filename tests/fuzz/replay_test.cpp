@@ -1,5 +1,6 @@
-// Runs the fuzzers' targets on the corpus, and on what a few changed bytes make of it. A file is
-// named OUTCOME.WHAT, by what it must come to; a directory, by its target.
+// Calls each fuzz target with the inputs of its corpus, and with the same inputs after a few bytes
+// have changed. CMake unpacks corpus/TARGET.zip into a folder TARGET. An input is called
+// OUTCOME.WHAT; its target must return OUTCOME.
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include "ist/base/error.h"
 #include "ist/haptics/devices/plan.h"
 #include "ist/scene.h"
-#include "support/memory_file.h"
+#include "support/temp_dir.h"
 
 namespace ist::test {
 namespace {

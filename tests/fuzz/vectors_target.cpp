@@ -3,7 +3,7 @@
 #include "fuzz/fuzz_target.h"
 #include "hardware/vector_file.h"
 #include "ist/base/error.h"
-#include "support/memory_file.h"
+#include "support/temp_dir.h"
 
 namespace ist::test {
 

@@ -4,12 +4,10 @@
 #include <cmath>
 #include <string>
 
-#include "haptics/bodies/press_energy.h"
 #include "haptics/human_pair.h"
 #include "ist/haptics/stability_border.h"
 #include "support/data_dir.h"
 #include "support/effort.h"
-#include "support/skip.h"
 #include "support/stability.h"
 
 namespace ist::test {

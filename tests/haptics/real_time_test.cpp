@@ -13,7 +13,7 @@
 #include <iostream>
 #include <string_view>
 
-#include "support/skip.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {

@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "haptics/effects/effect_case.h"
 #include "haptics/haptic_cases.h"
+#include "ist/haptics/recording.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
 
-// The ball is pressed on the box along -z to 1 mm below where they meet.
+// The ball is pressed on the box along -z, to 1 mm below the first contact.
 class Pressing : public ::testing::Test {
  protected:
   Pressing() : bodies_(ball_over_box()), simulation_(bodies_.simulation()) {}
@@ -38,7 +42,7 @@ TEST_F(Pressing, NothingIsFeltWhereNothingIsTouched) {
   EXPECT_LT((tick.tool.translation - tick.device.translation).norm(), 1e-12);
 }
 
-// The tool stays out, and the hand feels its coupling's spring: it balances what the contact does.
+// The tool stays out, and the hand feels the spring of its coupling, which balances the contact.
 TEST_F(Pressing, TheToolStaysOutsideAndTheHandFeelsIt) {
   const Tick tick = close_to(-2e-3);
   EXPECT_GT(tick.leaf_pairs, 1);
@@ -62,7 +66,7 @@ TEST_F(Pressing, RestsInTheContact) {
   EXPECT_LT(most - least, 0.01 * most);
 }
 
-// However hard and fast the hand goes: no more than a voxel a tick, so the box stops it.
+// A hand of any force and speed: the tool moves at most a voxel a tick, so the box stops it.
 TEST_F(Pressing, DoesNotTunnel) {
   press(1e-3);
   Eigen::Vector3d before = press(1e-3).tool.translation;
@@ -74,8 +78,8 @@ TEST_F(Pressing, DoesNotTunnel) {
   EXPECT_GT(before.z() - bodies_.touching(), -bodies_.voxel());
 }
 
-// Lack of time never lowers resistance: the tool is where all was known, and the hand, which goes
-// on, feels no less.
+// Lack of time never lowers resistance. The tool stays at the pose of the last complete answer. The
+// hand goes on and feels at least the same force.
 TEST_F(Pressing, KeepsWhatItKnewWhereAnAnswerIsNotComplete) {
   const Tick before = close_to(-1e-3);
   TickBudget none;
@@ -123,7 +127,7 @@ TEST_F(Pressing, GoesOnAfterAnyNumberOfAnswersThatWereNotComplete) {
   EXPECT_NEAR(tick.tool.translation.z(), bodies_.at(8e-4).translation.z(), 1e-9);
 }
 
-// What an effect is told of: the way of the tool, without what it came back from.
+// Adds up the tool's way along z, without the way back from a held tick.
 class AxisDirection final : public Effect {
  public:
   AxisDirection(double& sum, int& ticks) : sum_(sum), ticks_(ticks) {}
@@ -188,8 +192,8 @@ TEST_F(Pressing, ADevicePoseThatIsNoneIsAFault) {
   EXPECT_FALSE(press(-1e-3).fault);
 }
 
-// Whether the queries came to their end is all that a tick hangs on besides the device: not how far
-// they came, nor what was kept from earlier ticks.
+// A tick depends on the device, and on the completeness of its queries. It depends neither on their
+// tests nor on caches of earlier ticks.
 TEST_F(Pressing, WhetherItWasStoppedGivesTheSameBits) {
   Simulation again = bodies_.simulation();
   for (int i = 0; i < 400; ++i) {
@@ -208,6 +212,87 @@ TEST_F(Pressing, WhetherItWasStoppedGivesTheSameBits) {
       EXPECT_EQ(first.contacts->leaf_pairs, second.contacts->leaf_pairs);
     }
   }
+}
+
+TEST(TickRecord, HoldsATickInPlainNumbers) {
+  const HapticBodies bodies = ball_over_box();
+  Simulation simulation = bodies.simulation();
+  Tick tick{};
+  for (int i = 0; i < 600; ++i) tick = simulation.tick(bodies.at(1e-3 - 5e-6 * i), {});
+  ASSERT_GT(tick.contacts->leaf_pairs, 0u);
+  const TickRecord record = record_of(7, 1e-3, tick, true);
+  EXPECT_EQ(record.tick, 7u);
+  EXPECT_TRUE(record.device_known);
+  EXPECT_FALSE(record.fault || record.held || record.proximity);
+  EXPECT_EQ(record.contacts->sphere_tests, tick.contacts->sphere_tests);
+  EXPECT_EQ(record.leaf_pairs, tick.leaf_pairs);
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(record.wrench[static_cast<std::size_t>(i)], tick.wrench[i]);
+  }
+  EXPECT_EQ(record.late_ns + record.execution_ns + record.cpu_ns, 0);
+  EXPECT_FALSE(record_of(8, 1e-3, simulation.tick(std::nullopt, {}), false).device_known);
+}
+
+TEST(TickRecord, PosesComeBackBitForBit) {
+  Random random(21);
+  Placement placement;
+  for (int i = 0; i < samples(500); ++i) {
+    placement = placement.moved(six(random.point(-0.01, 0.01), random.point(-1, 1)));
+    const TickRecord::Pose numbers = to_numbers(placement);
+    EXPECT_EQ(numbers[1], placement.translation.y());
+    EXPECT_EQ(numbers[3 + 1], placement.rotation(1, 0));  // column by column
+    EXPECT_EQ(numbers[3 + 6], placement.rotation(0, 2));
+    const std::optional<Placement> back = to_placement(numbers);
+    ASSERT_TRUE(back);
+    EXPECT_EQ(back->translation, placement.translation);
+    EXPECT_EQ(back->rotation, placement.rotation);
+  }
+}
+
+TEST(TickRecord, NumbersThatAreNoRigidMotionAreRefused) {
+  TickRecord::Pose numbers = to_numbers(Placement());
+  for (const double none : {0.0, 2.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
+                            std::numeric_limits<double>::infinity()}) {
+    TickRecord::Pose bad = numbers;
+    bad[3] = none;
+    EXPECT_FALSE(to_placement(bad)) << none;
+  }
+  numbers[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(to_placement(numbers));
+}
+
+// A recording is made again tick by tick, those that were stopped and those without a device too.
+TEST(TickRecord, ReplayMakesTheSameTicks) {
+  const HapticBodies bodies = ball_over_box();
+  Simulation first = bodies.simulation(), again = bodies.simulation();
+  int held = 0, faults = 0;
+  for (std::uint64_t i = 0; i < 800; ++i) {
+    std::optional<Placement> device = bodies.at(1e-3 - 4e-6 * static_cast<double>(i));
+    if (i % 97 == 50) device.reset();
+    TickBudget budget;
+    if (i % 11 == 3) budget.contacts.tests = 5 * i;
+    const TickRecord made =
+        record_of(i, first.dt(), first.tick(device, budget), device.has_value());
+    TickBudget stopped;
+    if (!made.contacts->complete) stopped.contacts.tests = 0;
+    const TickRecord repeated = replay({i, device, stopped}, again);
+    EXPECT_EQ(repeated.tick, i);
+    EXPECT_EQ(repeated.device, made.device);
+    EXPECT_EQ(repeated.tool, made.tool);
+    EXPECT_EQ(repeated.wrench, made.wrench);
+    EXPECT_EQ(repeated.held, made.held);
+    EXPECT_EQ(repeated.fault, made.fault);
+    EXPECT_EQ(repeated.device_known, made.device_known);
+    EXPECT_EQ(repeated.leaf_pairs, made.leaf_pairs);
+    EXPECT_EQ(repeated.contacts->complete, made.contacts->complete);
+    if (made.contacts->complete) {
+      EXPECT_EQ(repeated.contacts->leaf_pairs, made.contacts->leaf_pairs);
+    }
+    held += made.held;
+    faults += made.fault;
+  }
+  EXPECT_GT(held, 20);
+  EXPECT_EQ(faults, 8);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "hardware/node_pair.h"
+#include "hardware/pair_walk.h"
 #include "support/exact.h"
 
 namespace ist::test {

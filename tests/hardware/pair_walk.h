@@ -4,12 +4,33 @@
 #include <bit>
 #include <cstdint>
 
-#include "hardware/node_pair.h"
+#include "ist/hardware/pair_test.h"
+#include "ist/hardware/quantized_pose.h"
 #include "ist/query/query_rules.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 
 namespace ist::test {
+
+/// A node as a tree has it: its cube's centre in units of its own tree.
+struct HardwareNode {
+  std::array<std::int32_t, 3> centre{};
+  int level = 0;
+  std::uint8_t mask = 255;
+};
+
+/// The circuit's input for two nodes.
+[[nodiscard]] inline NodePair node_pair(const QuantizedPose& pose, const HardwareNode& fixed,
+                                        const HardwareNode& moving) noexcept {
+  NodePair pair;
+  pair.fixed_centre = fixed.centre;
+  pair.fixed_level = static_cast<std::uint8_t>(fixed.level);
+  pair.fixed_mask = fixed.mask;
+  pair.moving_centre = move_centre(pose, moving.centre);
+  pair.moving_level = static_cast<std::uint8_t>(moving.level);
+  pair.moving_mask = moving.mask;
+  return pair;
+}
 
 /// The way of a query down two trees, as a unit round the circuit would go it: the reference's,
 /// with each pair of nodes decided by `touch(fixed, moving)`, two HardwareNodes.
@@ -21,7 +42,7 @@ class PairWalk {
     std::uint64_t tested = 0;      ///< pairs
     std::uint64_t leaf_pairs = 0;  ///< pairs of leaves that touch
     std::uint64_t opened = 0;      ///< pairs whose children were read
-    std::uint64_t words = 0;       ///< read: a node's mask and first child. Leaves have none
+    std::uint64_t words = 0;       ///< read: a node's mask and first child, of inner nodes only
     std::uint64_t moved = 0;       ///< centres that went through the mover
   };
 

@@ -15,7 +15,7 @@
 #include "ist/query/query.h"
 #include "ist/tree/sphere_tree.h"
 #include "simd/dispatch.h"
-#include "support/closing.h"
+#include "support/rigid_pose.h"
 
 namespace {
 

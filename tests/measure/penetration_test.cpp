@@ -13,7 +13,6 @@
 #include "support/effort.h"
 #include "support/errors.h"
 #include "support/shapes.h"
-#include "support/skip.h"
 
 namespace ist::test {
 namespace {

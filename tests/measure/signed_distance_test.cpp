@@ -14,8 +14,6 @@
 #include "support/effort.h"
 #include "support/errors.h"
 #include "support/shapes.h"
-#include "support/skip.h"
-#include "support/solid_angle.h"
 
 namespace ist::test {
 namespace {

@@ -11,9 +11,9 @@
 #include "ist/query/inside.h"
 #include "ist/query/query.h"
 #include "support/data_dir.h"
+#include "support/effort.h"
 #include "support/errors.h"
 #include "support/shapes.h"
-#include "support/skip.h"
 
 namespace ist {
 namespace {

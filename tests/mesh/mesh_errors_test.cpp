@@ -12,11 +12,10 @@
 #include "ist/base/error.h"
 #include "ist/mesh/mesh.h"
 #include "support/data_dir.h"
+#include "support/effort.h"
 #include "support/errors.h"
-#include "support/memory_file.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
-#include "support/skip.h"
 #include "support/temp_dir.h"
 #include "support/zip_file.h"
 

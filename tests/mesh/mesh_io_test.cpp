@@ -23,7 +23,6 @@
 #include "support/errors.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
-#include "support/skip.h"
 #include "support/temp_dir.h"
 
 namespace ist {

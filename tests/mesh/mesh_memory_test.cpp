@@ -6,9 +6,9 @@
 
 #include "ist/mesh/mesh.h"
 #include "support/data_dir.h"
+#include "support/effort.h"
 #include "support/largest_allocation.h"
 #include "support/mesh_files.h"
-#include "support/skip.h"
 #include "support/temp_dir.h"
 
 namespace ist {

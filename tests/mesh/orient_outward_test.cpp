@@ -6,8 +6,8 @@
 
 #include "ist/mesh/mesh.h"
 #include "support/data_dir.h"
+#include "support/effort.h"
 #include "support/shapes.h"
-#include "support/skip.h"
 
 namespace ist {
 namespace {

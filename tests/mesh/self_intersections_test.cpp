@@ -10,7 +10,7 @@
 #include "ist/mesh/triangles_meet.h"
 #include "query/query_cases.h"
 #include "support/effort.h"
-#include "support/exact_polygon.h"
+#include "support/exact.h"
 #include "support/shapes.h"
 
 namespace ist::test {

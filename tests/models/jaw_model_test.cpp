@@ -16,7 +16,7 @@
 
 #include "ist/models/models.h"
 #include "support/effort.h"
-#include "support/fingerprint.h"
+#include "support/shapes.h"
 
 namespace ist {
 namespace {

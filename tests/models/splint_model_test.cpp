@@ -18,7 +18,7 @@
 #include "ist/query/query.h"
 #include "ist/tree/sphere_tree.h"
 #include "support/errors.h"
-#include "support/fingerprint.h"
+#include "support/shapes.h"
 
 namespace ist::test {
 namespace {

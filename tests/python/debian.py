@@ -2,8 +2,7 @@
 
 from checks import need, require, run
 from clean_root import CleanRoot
-from environments import PYTHON, clean_environment
-from modules import modules
+from environments import PYTHON, clean_environment, modules
 
 PLACE = "usr/lib/python3/dist-packages"
 

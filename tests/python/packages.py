@@ -15,8 +15,7 @@ SOURCE = HERE.parent.parent
 sys.path.insert(0, str(SOURCE / "tests/package"))
 from checks import Missing, ends, need, require, run  # noqa: E402  after its folder is known
 from debian import DebianPackage  # noqa: E402
-from environments import PYTHON, clean_environment, tries  # noqa: E402
-from modules import LICENCES, modules  # noqa: E402
+from environments import LICENCES, PYTHON, clean_environment, modules, tries  # noqa: E402
 from remedies import WithoutLibrary  # noqa: E402
 
 

@@ -15,7 +15,6 @@
 #include "query/triangles/meeting_pairs.h"
 #include "support/data_dir.h"
 #include "support/effort.h"
-#include "support/skip.h"
 
 namespace ist::test {
 namespace {

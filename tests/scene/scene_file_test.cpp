@@ -7,7 +7,7 @@
 #include "ist/models/models.h"
 #include "ist/scene/make_effects.h"
 #include "ist/tree/sphere_tree.h"
-#include "scene/scene_text.h"
+#include "scene/scene_case.h"
 #include "support/scoped_variable.h"
 #include "support/temp_dir.h"
 

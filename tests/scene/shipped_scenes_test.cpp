@@ -8,7 +8,6 @@
 #include "support/data_dir.h"
 #include "support/effort.h"
 #include "support/scoped_variable.h"
-#include "support/skip.h"
 
 namespace ist::test {
 namespace {

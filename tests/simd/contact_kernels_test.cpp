@@ -15,7 +15,6 @@
 #include "simd/guarded.h"
 #include "simd/plan_cases.h"
 #include "simd/targets.h"
-#include "simd/terms_recorder.h"
 #include "support/effort.h"
 
 namespace ist::test {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ist/base/set_bits.h"
 #include "ist/tree/tree_parts.h"
 #include "query/contacts/contact_cases.h"
 #include "query/scenes.h"
@@ -11,7 +12,6 @@
 #include "query/triangles/mesh_distance.h"
 #include "query/triangles/triangle_tree.h"
 #include "simd/dispatch.h"
-#include "stability/leaf_overlap.h"
 #include "support/rigid_pose.h"
 #include "verify/read_bounds.h"
 
@@ -20,7 +20,29 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// The centre of a leaf's cube, in voxels from the root cube's.
+Eigen::Vector3d cube_centre(const LinearOctree& octree, std::uint32_t leaf) {
+  if (octree.depth() == 0) return Eigen::Vector3d::Zero();
+  const std::uint32_t parent = parent_of(octree, 0, leaf);
+  const auto& at = octree.nodes(1)[parent].centre;
+  Eigen::Vector3d centre(at[0], at[1], at[2]);
+  const unsigned octant = kSetBits[octree.mask(1, parent)][leaf - octree.first_child(1, parent)];
+  for (unsigned axis = 0; axis < 3; ++axis) centre[axis] += (octant >> axis & 1) != 0 ? 0.5 : -0.5;
+  return centre;
+}
+
+Bounds bounds_of(const SphereTree& tree, SpherePolicy policy, std::uint32_t leaf) {
+  if (!is_implicit(policy)) return read_bounds(tree, policy, leaf);
+  return {parts_of(tree).ball(policy, 0, leaf, cube_centre(parts_of(tree).octree, leaf)), {}};
+}
+
 }  // namespace
+
+double leaf_overlap(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+                    const Eigen::Isometry3d& between, const LeafPair& pair) {
+  return overlap(policy, bounds_of(fixed, policy, pair.fixed),
+                 moved(between, bounds_of(moving, policy, pair.moving)));
+}
 
 ShapeCases::ShapeCases(const std::string& shape)
     : voxels("shapes", shape + ": voxels", "pads between a triangle and a voxel that lists it"),
@@ -29,7 +51,7 @@ ShapeCases::ShapeCases(const std::string& shape)
       answers("shapes", shape + ": all else", "wrong answers") {}
 
 void check_voxels(const SphereTree& tree, StabilityCase& voxels) {
-  constexpr int kParts = 16;  // of a pad, to which it is measured
+  constexpr int kParts = 16;  // of a pad: the step of the measurement
   const Lattice& lattice = parts_of(tree).lattice;
   const std::vector<std::uint64_t> codes = parts_of(tree).octree.codes(0);
   const LeafTriangles& kept = *parts_of(tree).triangles;

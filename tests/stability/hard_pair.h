@@ -8,10 +8,20 @@
 #include "ist/query/manifold.h"
 #include "ist/query/query.h"
 #include "ist/query/reference/reference_query.h"
+#include "ist/query/results.h"
+#include "ist/tree/sphere_tree.h"
 #include "support/exact_query.h"
 #include "support/stability.h"
 
 namespace ist::test {
+
+/// Returns the overlap of the bounds of two leaves, in mesh units, below 0 if they are apart. A
+/// search finds the pair if it is positive. It is the least of the overlaps that the search tests:
+/// of the balls, and of each ball with the other's slab. In double, without a pad. `between` is the
+/// motion of between_frames().
+[[nodiscard]] double leaf_overlap(const SphereTree& fixed, const SphereTree& moving,
+                                  SpherePolicy policy, const Eigen::Isometry3d& between,
+                                  const LeafPair& pair);
 
 /// The results about one hard shape: a line each in perf/STABILITY.md.
 struct ShapeCases {
@@ -20,15 +30,15 @@ struct ShapeCases {
   StabilityCase voxels;      ///< how far a triangle is from a voxel that lists it
   StabilityCase leaf_pairs;  ///< how far bounds in an answer are apart
   StabilityCase gap;         ///< how far the distance is outside its interval
-  StabilityCase answers;     ///< all that is only right or wrong
+  StabilityCase answers;     ///< answers that are right or wrong
 };
 
 /// Samples how far the triangles in each voxel's list are from its cube, in parts of the pad of the
 /// build, against rationals; a triangle that meets a cube and is not in its list is infinitely far.
 void check_voxels(const SphereTree& tree, StabilityCase& voxels);
 
-/// Two small bodies, and all that can be asked about them: every policy, every target, one worker
-/// and two, held against rational numbers.
+/// Asks two small bodies every question, with every policy and target, with one worker and with
+/// two. Compares the answers with rational numbers.
 class HardPair {
  public:
   HardPair(const TriangleMesh& fixed, double fixed_voxel, const TriangleMesh& moving,

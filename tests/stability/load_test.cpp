@@ -13,7 +13,6 @@
 #include "query/triangles/triangle_tree.h"
 #include "support/data_dir.h"
 #include "support/effort.h"
-#include "support/skip.h"
 #include "support/stability.h"
 
 namespace ist::test {

@@ -8,7 +8,7 @@
 
 #include "ist/base/pose.h"
 #include "query/scenes.h"
-#include "stability/leaf_overlap.h"
+#include "stability/hard_pair.h"
 #include "support/effort.h"
 #include "support/rigid_pose.h"
 #include "support/stability.h"

@@ -15,7 +15,6 @@
 #include "support/data_dir.h"
 #include "support/effort.h"
 #include "support/shapes.h"
-#include "support/skip.h"
 
 namespace ist::test {
 namespace {

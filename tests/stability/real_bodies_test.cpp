@@ -17,7 +17,6 @@
 #include "support/data_dir.h"
 #include "support/effort.h"
 #include "support/shapes.h"
-#include "support/skip.h"
 #include "support/stability.h"
 #include "verify/answer_verifier.h"
 

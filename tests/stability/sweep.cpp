@@ -6,9 +6,9 @@
 #include "ist/query/contacts/contact_reducer.h"
 #include "ist/query/query_rules.h"
 #include "ist/tree/tree_parts.h"
-#include "query/contacts/pair_sums.h"
+#include "query/contacts/contact_cases.h"
 #include "query/query_cases.h"
-#include "stability/leaf_overlap.h"
+#include "stability/hard_pair.h"
 #include "support/rigid_pose.h"
 #include "verify/read_bounds.h"
 

@@ -29,7 +29,7 @@ mpq_class distance_squared(const ExactPoint& point, const ExactPoint& a, const E
   return square(point - (a + std::clamp<mpq_class>(part, 0, 1) * along));
 }
 
-// The smallest ball with all the points on its surface, or nothing where no ball has: its centre
+// The smallest ball with all the points on its surface, or nothing if there is none. Its centre
 // is p0 + Σ xᵢ dᵢ, dᵢ = pᵢ - p0, and |centre - pᵢ| = |centre - p0| makes Σⱼ 2 dᵢ·dⱼ xⱼ = dᵢ·dᵢ.
 std::optional<ExactBall> ball_through(const std::vector<ExactPoint>& points) {
   const std::size_t n = points.size() - 1;
@@ -163,7 +163,7 @@ ExactBall smallest_ball(const std::vector<ExactPoint>& points) {
       farthest = &p;
     }
     if (farthest == nullptr) return ball;
-    support.push_back(*farthest);  // at most five, of which at most four will do
+    support.push_back(*farthest);  // at most five, and four are enough
     std::optional<ExactBall> best;
     std::vector<ExactPoint> best_support;
     for (unsigned chosen = 1; chosen < 1u << support.size(); ++chosen) {
@@ -231,7 +231,7 @@ std::vector<std::uint64_t> cells_met(const ExactPolygon& polygon, const Lattice&
     const ExactPolygon layer = slab(polygon, 2, z);
     const CellRange rows = cell_range(layer, 1, lattice, grow);
     for (std::uint32_t y = rows.begin; y < rows.end; ++y) {
-      // What is convex meets all cells between its ends.
+      // A convex polygon meets all cells between its ends.
       const CellRange row = cell_range(slab(layer, 1, y), 0, lattice, grow);
       for (std::uint32_t x = row.begin; x < row.end; ++x) {
         std::uint64_t code = 0;
@@ -246,6 +246,89 @@ std::vector<std::uint64_t> cells_met(const ExactPolygon& polygon, const Lattice&
   }
   std::sort(codes.begin(), codes.end());
   return codes;
+}
+
+namespace {
+
+// The points x with normal · x <= offset.
+struct HalfSpace {
+  ExactPoint normal;
+  mpq_class offset;
+};
+
+bool is_zero(const ExactPoint& a) { return a == ExactPoint(); }
+
+// Sutherland and Hodgman's clipping. In rational numbers it is exact, and holds for segments and
+// points as well.
+ExactPolygon cut(const ExactPolygon& polygon, const HalfSpace& half) {
+  std::vector<mpq_class> beyond;
+  for (const ExactPoint& p : polygon) beyond.emplace_back(dot(half.normal, p) - half.offset);
+  ExactPolygon kept;
+  for (std::size_t to = 0; to < polygon.size(); ++to) {
+    const std::size_t from = (to == 0 ? polygon.size() : to) - 1;
+    if (sgn(beyond[from]) * sgn(beyond[to]) < 0) {
+      const mpq_class part = beyond[from] / (beyond[from] - beyond[to]);
+      ExactPoint& crossing = kept.emplace_back();
+      for (std::size_t i = 0; i < 3; ++i) {
+        crossing[i] = polygon[from][i] + part * (polygon[to][i] - polygon[from][i]);
+      }
+    }
+    if (sgn(beyond[to]) <= 0) kept.push_back(polygon[to]);
+  }
+  return kept;
+}
+
+void add_equal(std::vector<HalfSpace>& halves, const ExactPoint& normal, const ExactPoint& at) {
+  const mpq_class offset = dot(normal, at);
+  halves.push_back({normal, offset});
+  halves.push_back({mpq_class(-1) * normal, -offset});
+}
+
+// A polygon as the intersection of half spaces.
+std::vector<HalfSpace> half_spaces(const ExactPolygon& polygon) {
+  std::vector<HalfSpace> halves;
+  const ExactPoint& first = polygon.front();
+  ExactPoint normal, along;
+  for (std::size_t i = 1; i < polygon.size(); ++i) {
+    const ExactPoint side = polygon[i] - first;
+    if (is_zero(along)) along = side;
+    const ExactPoint area = cross(polygon[i - 1] - first, side);
+    normal = normal + area;
+  }
+  if (!is_zero(normal)) {
+    add_equal(halves, normal, first);
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const ExactPoint& p = polygon[i];
+      const ExactPoint outward = cross(polygon[(i + 1) % polygon.size()] - p, normal);
+      halves.push_back({outward, dot(outward, p)});
+    }
+    return halves;
+  }
+  if (is_zero(along)) {
+    for (std::size_t axis = 0; axis < 3; ++axis) add_equal(halves, unit(axis), first);
+    return halves;
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) add_equal(halves, cross(along, unit(axis)), first);
+  mpq_class low = dot(along, first), high = low;
+  for (const ExactPoint& p : polygon) {
+    low = std::min<mpq_class>(low, dot(along, p));
+    high = std::max<mpq_class>(high, dot(along, p));
+  }
+  halves.push_back({along, high});
+  halves.push_back({mpq_class(-1) * along, -low});
+  return halves;
+}
+
+}  // namespace
+
+bool polygons_meet(const ExactPolygon& a, const ExactPolygon& b) {
+  if (a.empty() || b.empty()) return false;
+  ExactPolygon left = a;
+  for (const HalfSpace& half : half_spaces(b)) {
+    left = cut(left, half);
+    if (left.empty()) return false;
+  }
+  return true;
 }
 
 }  // namespace ist::test

@@ -10,9 +10,10 @@
 #include "ist/mesh/mesh.h"
 #include "ist/voxel/lattice.h"
 
+namespace ist::test {
+
 /// Geometry in exact rationals: the oracle that code in double is held against. Plain and slow, and
 /// made of nothing of the library's but its plain structs.
-namespace ist::test {
 
 struct ExactPoint {
   std::array<mpq_class, 3> coordinates;
@@ -42,7 +43,8 @@ using ExactPolygon = std::vector<ExactPoint>;
 [[nodiscard]] ExactPolygon exact_triangle(const TriangleMesh& mesh, std::size_t triangle);
 [[nodiscard]] ExactPolygon exact_triangle(const std::array<Eigen::Vector3d, 3>& corners);
 
-/// The part of `polygon` with low <= coordinate `axis` <= high; empty where they do not even touch.
+/// Returns the part of `polygon` with low <= coordinate `axis` <= high. It is empty if they do not
+/// touch.
 [[nodiscard]] ExactPolygon clip_between(const ExactPolygon& polygon, std::size_t axis,
                                         const mpq_class& low, const mpq_class& high);
 
@@ -81,5 +83,9 @@ struct ExactBall {
 /// `grow` mesh units.
 [[nodiscard]] std::vector<std::uint64_t> cells_met(const ExactPolygon& polygon,
                                                    const Lattice& lattice, const mpq_class& grow);
+
+/// Whether two convex polygons in space share a point. Touching counts. Each may be flat to a
+/// segment or a point; no corners are the empty set.
+[[nodiscard]] bool polygons_meet(const ExactPolygon& a, const ExactPolygon& b);
 
 }  // namespace ist::test

@@ -12,7 +12,7 @@
 #include "ist/mesh/mesh.h"
 #include "ist/query/results.h"
 #include "ist/tree/sphere_tree.h"
-#include "support/exact_polygon.h"
+#include "support/exact.h"
 
 namespace ist::test {
 

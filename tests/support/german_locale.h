@@ -10,9 +10,9 @@
 #include <regex>
 #include <string>
 
+#include "support/effort.h"
 #include "support/run_command.h"
 #include "support/scoped_variable.h"
-#include "support/skip.h"
 #include "support/temp_dir.h"
 
 namespace ist::test {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -28,7 +30,7 @@ namespace ist::test {
 [[nodiscard]] std::string as_glb(const TriangleMesh& mesh);
 /// A GLB of a JSON and its binary chunk.
 [[nodiscard]] std::string as_glb(std::string json, std::string chunk);
-/// The JSON of a glTF with one mesh in one buffer, whose `uri` is left out where it is empty.
+/// Returns the JSON of a glTF with one mesh in one buffer. An empty `uri` is left out.
 [[nodiscard]] std::string gltf_json(const TriangleMesh& mesh, const std::string& uri);
 /// That buffer: the vertices as floats, then the indices in 32 bits.
 [[nodiscard]] std::string gltf_buffer(const TriangleMesh& mesh);
@@ -48,5 +50,17 @@ namespace ist::test {
 /// The text with every `from` turned into `to`.
 [[nodiscard]] std::string replaced(std::string text, const std::string& from,
                                    const std::string& to);
+
+/// A binary little-endian PLY whose vertices have properties of float, int and uchar and whose
+/// faces are lists.
+struct PlyFile {
+  std::vector<std::pair<std::string, std::string>> properties;  ///< kind and name, in order
+  std::vector<std::map<std::string, double>> vertices;          ///< by the names of properties
+  std::vector<std::vector<std::uint32_t>> faces;
+};
+
+/// Reads a PLY file of the command. Throws std::runtime_error for another header, and for too few
+/// or too many bytes.
+[[nodiscard]] PlyFile parse_ply(const std::string& bytes);
 
 }  // namespace ist::test

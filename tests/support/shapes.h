@@ -1,6 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <numbers>
 #include <vector>
 
 #include "ist/mesh/mesh.h"
@@ -58,5 +64,34 @@ namespace ist::test {
 
 /// The mesh moved.
 [[nodiscard]] TriangleMesh moved(TriangleMesh mesh, const Eigen::Vector3d& by);
+
+/// Returns how often a mesh goes round a point: the sum of its triangles' solid angles. It is no
+/// whole number for an open mesh. Rounding matters near the surface only.
+/// Source: A. van Oosterom, J. Strackee, The solid angle of a plane triangle, IEEE Transactions on
+/// Biomedical Engineering 30(2), 1983.
+[[nodiscard]] inline double winding_by_angles(const TriangleMesh& mesh, const Eigen::Vector3d& p) {
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Eigen::Vector3d a = mesh.vertices[t[0]] - p, b = mesh.vertices[t[1]] - p,
+                          c = mesh.vertices[t[2]] - p;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    sum +=
+        std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return sum / (2 * std::numbers::pi);
+}
+
+/// FNV-1a over all bytes of a mesh.
+[[nodiscard]] inline std::uint64_t fingerprint(const TriangleMesh& mesh) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  const auto add = [&](const void* data, std::size_t size) {
+    std::vector<unsigned char> bytes(size);
+    std::memcpy(bytes.data(), data, size);
+    for (const unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3;
+  };
+  add(mesh.vertices.data(), mesh.vertices.size() * sizeof(mesh.vertices[0]));
+  add(mesh.triangles.data(), mesh.triangles.size() * sizeof(mesh.triangles[0]));
+  return hash;
+}
 
 }  // namespace ist::test

@@ -1,10 +1,13 @@
 #include "support/temp_dir.h"
 
 #include <stdlib.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <string>
 
 namespace ist::test {
 
@@ -37,6 +40,23 @@ std::size_t TempDir::entries() const {
 std::string file_content(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+MemoryFile::MemoryFile() : descriptor_(::memfd_create("test", MFD_CLOEXEC)) {
+  if (descriptor_ < 0) throw std::runtime_error("no file in memory");
+}
+
+MemoryFile::~MemoryFile() { ::close(descriptor_); }
+
+std::filesystem::path MemoryFile::path() const {
+  return "/proc/self/fd/" + std::to_string(descriptor_);
+}
+
+void MemoryFile::write(std::string_view bytes) const {
+  if (::ftruncate(descriptor_, 0) != 0 ||
+      ::pwrite(descriptor_, bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
+    throw std::runtime_error("cannot write a file in memory");
+  }
 }
 
 }  // namespace ist::test

@@ -6,7 +6,7 @@
 
 namespace ist::test {
 
-/// A folder of its own for a test, removed with all that is in it.
+/// A temporary folder of a test. The destructor removes it with its content.
 class TempDir {
  public:
   TempDir();
@@ -26,5 +26,22 @@ class TempDir {
 
 /// The content of a file.
 [[nodiscard]] std::string file_content(const std::filesystem::path& file);
+
+/// A regular file in memory, for tests that write and read it thousands of times.
+class MemoryFile {
+ public:
+  MemoryFile();
+  ~MemoryFile();
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  /// Returns the path by which this process opens the file.
+  [[nodiscard]] std::filesystem::path path() const;
+  /// Replaces its content.
+  void write(std::string_view bytes) const;
+
+ private:
+  int descriptor_;
+};
 
 }  // namespace ist::test

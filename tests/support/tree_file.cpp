@@ -6,7 +6,6 @@
 
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
-#include "support/memory_file.h"
 #include "support/temp_dir.h"
 
 namespace ist::test {

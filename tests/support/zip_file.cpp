@@ -8,7 +8,7 @@
 namespace ist::test {
 namespace {
 
-void append(std::string& bytes, std::size_t value, int size) {
+void append_bytes(std::string& bytes, std::size_t value, int size) {
   for (int i = 0; i < size; ++i) bytes += static_cast<char>(value >> (8 * i) & 0xFF);
 }
 
@@ -40,26 +40,27 @@ std::string shared_fields(const ZipPart& part, std::size_t packed, std::size_t e
   for (const std::size_t half :
        {std::size_t{wide ? 45u : 20u}, std::size_t{0}, std::size_t{part.deflated ? 8u : 0u},
         std::size_t{0}, std::size_t{0}})
-    append(bytes, half, 2);
-  append(bytes,
-         crc32_z(0, reinterpret_cast<const Bytef*>(part.content.data()), part.content.size()), 4);
-  append(bytes, wide ? kElsewhere : packed, 4);
-  append(bytes, wide ? kElsewhere : claimed_size(part), 4);
-  append(bytes, part.name.size(), 2);
-  append(bytes, extra, 2);
+    append_bytes(bytes, half, 2);
+  append_bytes(bytes,
+               crc32_z(0, reinterpret_cast<const Bytef*>(part.content.data()), part.content.size()),
+               4);
+  append_bytes(bytes, wide ? kElsewhere : packed, 4);
+  append_bytes(bytes, wide ? kElsewhere : claimed_size(part), 4);
+  append_bytes(bytes, part.name.size(), 2);
+  append_bytes(bytes, extra, 2);
   return bytes;
 }
 
 // The extra field of ZIP64.
 std::string wide_numbers(const std::vector<std::size_t>& numbers) {
   std::string bytes;
-  append(bytes, 1, 2);
-  append(bytes, 8 * numbers.size(), 2);
-  for (const std::size_t number : numbers) append(bytes, number, 8);
+  append_bytes(bytes, 1, 2);
+  append_bytes(bytes, 8 * numbers.size(), 2);
+  for (const std::size_t number : numbers) append_bytes(bytes, number, 8);
   return bytes;
 }
 
-std::string spelled(double coordinate) {
+std::string spelled_double(double coordinate) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, coordinate).ptr};
 }
@@ -77,33 +78,33 @@ std::string as_zip(const std::vector<ZipPart>& parts, ZipNumbers numbers) {
     bytes += "PK\3\4" + shared_fields(part, packed.size(), local.size(), wide);
     bytes += part.name + local + packed;
     directory += "PK\1\2";
-    append(directory, 20, 2);
+    append_bytes(directory, 20, 2);
     directory += shared_fields(part, packed.size(), central.size(), wide) + std::string(10, '\0');
-    append(directory, wide ? kElsewhere : offset, 4);
+    append_bytes(directory, wide ? kElsewhere : offset, 4);
     directory += part.name + central;
   }
   const std::size_t begin = bytes.size(), end = begin + directory.size();
   bytes += directory;
   if (wide) {
     bytes += "PK\6\6";
-    append(bytes, 44, 8);  // bytes that follow
-    append(bytes, 45, 2);
-    append(bytes, 45, 2);
-    append(bytes, 0, 8);  // disks
-    append(bytes, parts.size(), 8);
-    append(bytes, parts.size(), 8);
-    append(bytes, directory.size(), 8);
-    append(bytes, begin, 8);
+    append_bytes(bytes, 44, 8);  // bytes that follow
+    append_bytes(bytes, 45, 2);
+    append_bytes(bytes, 45, 2);
+    append_bytes(bytes, 0, 8);  // disks
+    append_bytes(bytes, parts.size(), 8);
+    append_bytes(bytes, parts.size(), 8);
+    append_bytes(bytes, directory.size(), 8);
+    append_bytes(bytes, begin, 8);
     bytes += "PK\6\7" + std::string(4, '\0');
-    append(bytes, end, 8);
-    append(bytes, 1, 4);
+    append_bytes(bytes, end, 8);
+    append_bytes(bytes, 1, 4);
   }
   bytes += "PK\5\6" + std::string(4, '\0');
-  append(bytes, parts.size(), 2);
-  append(bytes, parts.size(), 2);
-  append(bytes, directory.size(), 4);
-  append(bytes, wide ? kElsewhere : begin, 4);
-  append(bytes, 0, 2);
+  append_bytes(bytes, parts.size(), 2);
+  append_bytes(bytes, parts.size(), 2);
+  append_bytes(bytes, directory.size(), 4);
+  append_bytes(bytes, wide ? kElsewhere : begin, 4);
+  append_bytes(bytes, 0, 2);
   return bytes;
 }
 
@@ -119,8 +120,8 @@ std::string threemf_model(const TriangleMesh& mesh) {
       "<?xml version=\"1.0\"?>\n<model unit=\"millimeter\">\n<resources>\n"
       "<object id=\"1\">\n<mesh>\n<vertices>\n";
   for (const Eigen::Vector3d& v : mesh.vertices)
-    xml += "<vertex x=\"" + spelled(v.x()) + "\" y=\"" + spelled(v.y()) + "\" z=\"" +
-           spelled(v.z()) + "\"/>\n";
+    xml += "<vertex x=\"" + spelled_double(v.x()) + "\" y=\"" + spelled_double(v.y()) + "\" z=\"" +
+           spelled_double(v.z()) + "\"/>\n";
   xml += "</vertices>\n<triangles>\n";
   for (const auto& [a, b, c] : mesh.triangles)
     xml += "<triangle v1=\"" + std::to_string(a) + "\" v2=\"" + std::to_string(b) + "\" v3=\"" +

@@ -1,26 +1,233 @@
-// Bounds of inner nodes against those of their leaves, in rational numbers.
-
 #include "ist/tree/nested_bounds.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "ist/models/models.h"
+#include "ist/tree/bound_blocks.h"
 #include "ist/tree/bound_builder.h"
+#include "ist/tree/leaf_search.h"
+#include "ist/tree/linear_octree.h"
 #include "ist/voxel/voxelizer.h"
 #include "support/effort.h"
-#include "support/exact_nesting.h"
+#include "support/exact.h"
 #include "support/random.h"
 #include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+/// A saved bound in rational numbers, voxels from the root cube's centre.
+struct ExactBound {
+  ExactPoint centre;
+  mpq_class radius;
+  ExactPoint normal;  ///< zero without slabs
+  mpq_class offset, half;
+};
+
+/// Unpacks child `slot` of `parent`, a node at `level`, from the description of the blocks.
+[[nodiscard]] ExactBound exact_bound(const BoundBlocks& bounds, const LinearOctree& octree,
+                                     int level, std::uint32_t parent, int slot);
+
+/// Whether the ball of `outer` contains the ball of `inner`.
+[[nodiscard]] bool holds_ball(const ExactBound& outer, const ExactBound& inner);
+
+/// Whether normal · (x - from) is at most `limit` for all x within `partner_radius` of a bound:
+/// those with |x - c| <= radius + partner radius and |n · (x - c) - offset| <= half + partner
+/// radius. Decided in rational numbers; a normal of a bound, and a partner radius that leaves
+/// something of the bound.
+[[nodiscard]] bool stays_below(const ExactBound& bound, const mpq_class& partner_radius,
+                               const ExactPoint& normal, const ExactPoint& from,
+                               const mpq_class& limit);
+
+/// Whether a slab is nested over a leaf for a partner of `partner_radius`, counting as wider by
+/// `rise`.
+[[nodiscard]] bool is_nested(const ExactBound& outer, const ExactBound& leaf,
+                             const mpq_class& partner_radius, const mpq_class& rise = 0);
+
+// Whether a + √b <= c, for b >= 0.
+bool root_at_most(const mpq_class& b, const mpq_class& c) { return sgn(c) >= 0 && b <= c * c; }
+
+ExactBound exact_bound(const BoundBlocks& bounds, const LinearOctree& octree, int level,
+                       std::uint32_t parent, int slot) {
+  const auto index = static_cast<std::size_t>(level);
+  const mpq_class edge = mpq_class(std::uint64_t{1} << level);
+  const PackedBall ball = bounds.balls[index][parent][slot];
+  const mpq_class unit = 2 * edge / 65536;
+  const int place[] = {ball.x, ball.y, ball.z};
+  ExactBound bound;
+  for (std::size_t i = 0; i < 3; ++i) {
+    bound.centre[i] = mpq_class(octree.nodes(level + 1)[parent].centre[i]) + place[i] * unit;
+  }
+  bound.radius = ball.r * unit;
+  if (bounds.slabs.empty()) return bound;
+  const PackedSlab slab = bounds.slabs[index][parent][slot];
+  bound.normal =
+      mpq_class(1, 128) * ExactPoint{{mpq_class(slab.nx), mpq_class(slab.ny), mpq_class(slab.nz)}};
+  bound.offset = slab.offset * edge / 256;
+  bound.half = slab.half * edge / 256;
+  return bound;
+}
+
+bool holds_ball(const ExactBound& outer, const ExactBound& inner) {
+  return root_at_most(square(inner.centre - outer.centre), outer.radius - inner.radius);
+}
+
+// If the ball's point farthest along the normal lies beyond a face of the slab, the disc's point
+// farthest along it counts: at (p · top + √((NN - p²/nn) nn (R² nn - top²))) / nn from the centre,
+// with p = N · n, NN = |N|², nn = |n|², R = radius + partner radius and top = ±offset + half +
+// partner radius.
+bool stays_below(const ExactBound& bound, const mpq_class& partner_radius, const ExactPoint& normal,
+                 const ExactPoint& from, const mpq_class& limit) {
+  const mpq_class radius = bound.radius + partner_radius;
+  const mpq_class squared = square(normal), own = square(bound.normal);
+  const mpq_class left = limit - dot(normal, bound.centre - from);
+  if (root_at_most(radius * radius * squared, left)) return true;  // the whole ball stays below
+  for (const int side : {1, -1}) {
+    const mpq_class along = side * dot(normal, bound.normal);
+    const mpq_class top = side * bound.offset + bound.half + partner_radius;
+    // Beyond this face: R p > top √NN.
+    const bool beyond =
+        sgn(top) >= 0 ? sgn(along) > 0 && radius * radius * along * along > top * top * squared
+                      : sgn(along) >= 0 || radius * radius * along * along < top * top * squared;
+    if (!beyond) continue;
+    const mpq_class disc = (squared * own - along * along) * (radius * radius * own - top * top);
+    return root_at_most(disc, left * own - along * top);
+  }
+  return false;
+}
+
+bool is_nested(const ExactBound& outer, const ExactBound& leaf, const mpq_class& partner_radius,
+               const mpq_class& rise) {
+  const mpq_class room = outer.half + partner_radius + rise;
+  return stays_below(leaf, partner_radius, outer.normal, outer.centre, outer.offset + room) &&
+         stays_below(leaf, partner_radius, mpq_class(-1) * outer.normal, outer.centre,
+                     room - outer.offset);
+}
+
+}  // namespace
+}  // namespace ist::test
 
 namespace ist {
 namespace {
 
 using Eigen::Vector3d;
+
+// A normal as blocks hold it, of length 0.98 to 1.
+Vector3d packed_normal(test::Random& random) {
+  Vector3d normal = random.uniform(126.5, 127) * random.direction();
+  for (double& x : normal) x = std::floor(x + 0.5) / 128;
+  return normal;
+}
+
+// The value to a few roundings, against a decision in rational numbers on both sides of it.
+void expect_support(const Ball& ball, const Slab& slab, double partner_radius,
+                    const Vector3d& normal, const Vector3d& from) {
+  const InflatedBound bound(ball, slab, partner_radius);
+  const double length = normal.norm();
+  const double value = bound.support(normal, length, from);
+  const double error = 0x1p-49 * (ball.radius + partner_radius + (ball.centre - from).norm());
+  const test::ExactBound exact{test::exact(ball.centre), ball.radius, test::exact(slab.normal),
+                               slab.offset, slab.half};
+  const auto below = [&](double limit) {
+    return test::stays_below(exact, partner_radius, test::exact(normal), test::exact(from), limit);
+  };
+  ASSERT_TRUE(below(value + error)) << value;
+  ASSERT_FALSE(below(value - error)) << value;
+  const Vector3d point = bound.support_point(normal, length);
+  ASSERT_NEAR(normal.dot(point - from), value, 1e-9 * (1 + std::abs(value)));
+  ASSERT_LE((point - ball.centre).norm(), (ball.radius + partner_radius) * (1 + 1e-9));
+}
+
+TEST(InflatedBound, SupportsAreExactToAFewRoundings) {
+  test::Random random(1);
+  for (int i = 0; i < test::samples(20'000); ++i) {
+    const Ball ball{random.point(-5, 5), random.uniform(0.01, 0.87)};
+    Slab slab{packed_normal(random), ball.radius * random.uniform(-0.6, 0.6),
+              random.uniform(0, 0.4)};
+    Vector3d normal = packed_normal(random);
+    // Every other normal is close to the slab's, to its opposite, or the same.
+    if (i % 2 == 0) {
+      normal = (i % 4 == 0 ? 1 : -1) * slab.normal;
+      if (i % 8 < 4) normal[i % 3] += (std::abs(normal[i % 3]) < 0.9 ? 1.0 : -1.0) / 128;
+      if (normal.norm() > 1) continue;
+    }
+    if (i % 100 == 99) slab = {Vector3d::Zero(), 0, 1};  // holds everything
+    ASSERT_NO_FATAL_FAILURE(
+        expect_support(ball, slab, i % 3 == 0 ? 0 : kPartnerRadius, normal, random.point(-5, 5)));
+  }
+}
+
+struct BuiltTree {
+  explicit BuiltTree(const TriangleMesh& mesh, double voxel_size)
+      : voxels(voxelize(mesh, {voxel_size, true})),
+        octree(voxels.codes, voxels.lattice.depth),
+        bounds(build_bounds(SpherePolicy::kSlab, mesh, voxels, octree)) {}
+
+  VoxelSet voxels;
+  LinearOctree octree;
+  BoundBlocks bounds;
+};
+
+// Each child below is a node at level 1, so that it gives the leaves one by one.
+void append_leaves(const BuiltTree& tree, int level, std::uint32_t node, std::vector<Ball>& balls,
+                   std::vector<Slab>& slabs) {
+  if (level == 1) {
+    LeafSearch search(tree.octree, tree.bounds, 1);
+    search.set_node(node);
+    for (int slot = 0; slot < tree.octree.child_count(1, node); ++slot) {
+      balls.push_back(search.child_ball(slot));
+      slabs.push_back(search.child_slab(slot));
+    }
+    return;
+  }
+  const std::uint32_t first = tree.octree.first_child(level, node);
+  for (int slot = 0; slot < tree.octree.child_count(level, node); ++slot) {
+    append_leaves(tree, level - 1, first + static_cast<std::uint32_t>(slot), balls, slabs);
+  }
+}
+
+// The greatest of all leaves, to the last bit: nothing that counts is passed over.
+TEST(LeafSearch, FindsTheGreatestOfAllLeaves) {
+  const BuiltTree tree(test::icosphere(3, 1), 0.08);
+  test::Random random(2);
+  for (int level = 1; level <= tree.octree.depth(); ++level) {
+    LeafSearch search(tree.octree, tree.bounds, level);
+    for (std::uint32_t node = 0; node < tree.octree.node_count(level); node += 5) {
+      std::vector<Ball> balls;
+      std::vector<Slab> slabs;
+      append_leaves(tree, level, node, balls, slabs);
+      search.set_node(node);
+      const Vector3d from = balls[random.below(static_cast<std::uint32_t>(balls.size()))].centre +
+                            random.uniform(0, 3) * random.direction();
+      const Vector3d normal = packed_normal(random);
+      const double length =
+          std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+      double farthest = 0, highest = -HUGE_VAL;
+      for (std::size_t i = 0; i < balls.size(); ++i) {
+        farthest = std::max(farthest, (balls[i].centre - from).norm() + balls[i].radius);
+        highest = std::max(highest, height_of(InflatedBound(balls[i], slabs[i], kPartnerRadius),
+                                              normal, length, from));
+      }
+      ASSERT_NEAR(search.farthest(from).value, farthest, 1e-14 * farthest);
+      Greatest<InflatedBound> greatest;
+      search.raise_support(normal, from, greatest);
+      ASSERT_EQ(greatest.value, highest);
+      ASSERT_EQ(height_of(greatest.bound, normal, length, from), highest);
+      greatest.value = highest + 1;  // the search keeps a greater value
+      search.raise_support(normal, from, greatest);
+      ASSERT_EQ(greatest.value, highest + 1);
+    }
+  }
+}
+
+// Compares bounds of inner nodes with the bounds of their leaves, in rational numbers.
+
 using test::ExactBound;
 using test::ExactPoint;
 
@@ -71,8 +278,7 @@ class Nested {
   std::vector<ExactBound> leaves_;
 };
 
-// The partner radii for which a slab must hold as it is, from almost none, and beyond them with the
-// rise.
+// A slab must hold without the rise for the partner radii up to its own, and with the rise beyond.
 void expect_nested(const Nested& tree, std::uint32_t step = 1) {
   ASSERT_GT(tree.octree().depth(), 0);
   const mpq_class built(kPartnerRadius), rise(kPartnerRise);
@@ -161,8 +367,8 @@ TEST(NestedBounds, AreBallsThatAreHardlyLargerThanTheSmallest) {
   }
 }
 
-// Nested for its partner radius, the slab of a plane is as thin as the leaves', but for what its
-// rounded normal tilts and what a leaf's normal is shorter.
+// The slab of a plane, nested for its partner radius, is as thin as the leaves' slabs. The tilt of
+// its rounded normal and the shorter normal of a leaf add to it.
 TEST(NestedBounds, OfAFlatPatchAreThin) {
   const Nested tree(test::open_strip(3), 0.3);
   tree.each_inner_node(1, [&](int level, const ExactBound& node, std::uint32_t, std::uint32_t) {

@@ -4,7 +4,7 @@
 
 #include "answers/formats/ply_writer.h"
 #include "answers/formats/samples.h"
-#include "support/ply_file.h"
+#include "support/mesh_files.h"
 #include "support/temp_dir.h"
 
 namespace ist::test {

@@ -15,7 +15,6 @@
 #include "cli/occlusion/bite_view.h"
 #include "cli/occlusion/bites.h"
 #include "cli/occlusion/map_picture.h"
-#include "cli/occlusion/png_file.h"
 #include "support/effort.h"
 #include "support/errors.h"
 #include "support/run_command.h"

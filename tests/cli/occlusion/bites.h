@@ -2,14 +2,16 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "answers/occlusion/bite.h"
+#include "cli/occlusion/map_picture.h"
 #include "ist/query/query.h"
 
 namespace ist::test {
 
-/// A bite, and what it refers to.
+/// A bite, and the bodies that it refers to.
 struct MadeBite {
   SphereTree fixed, moving;
   answers::Bite bite;
@@ -33,5 +35,11 @@ struct MadeBite {
 /// fixed.
 [[nodiscard]] std::unique_ptr<MadeBite> sphere_over_plate(const Eigen::Vector3d& lowest,
                                                           std::string_view preset = "scan");
+
+/// Reads a PNG by libpng's decoder. Throws std::runtime_error for other bytes.
+[[nodiscard]] cli::Picture decoded(const std::string& png);
+
+/// The pixel at a place, whose y runs down.
+[[nodiscard]] answers::Colour pixel_at(const cli::Picture& picture, int x, int y);
 
 }  // namespace ist::test

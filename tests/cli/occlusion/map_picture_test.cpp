@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "cli/occlusion/bites.h"
-#include "cli/occlusion/png_file.h"
 #include "support/shapes.h"
 
 namespace ist::test {

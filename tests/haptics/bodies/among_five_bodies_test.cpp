@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "haptics/bodies/body_cases.h"
-#include "haptics/bodies/press_energy.h"
+#include "haptics/human_pair.h"
 #include "ist/haptics/simulation.h"
 #include "ist/haptics/stability_border.h"
 #include "support/effort.h"

@@ -4,6 +4,8 @@
 
 #include <numeric>
 
+#include "haptics/bodies/body_cases.h"
+#include "ist/haptics/simulation.h"
 #include "ist/haptics/tool.h"
 #include "support/effort.h"
 #include "support/random.h"
@@ -201,8 +203,8 @@ TEST_F(Corner, ABudgetIsDividedByWhatEachPairNeeds) {
   EXPECT_LE(stopped->sphere_tests, budget.tests + 3) << "the roots are always tested";
 }
 
-// Where little is missing the first pair goes without it, and those behind it have what they need.
-// Without caches a pose takes the same tests each time.
+// If a few tests are missing, the first pair is left out and the later pairs get all tests that
+// they need. Without caches a pose takes the same tests each time.
 TEST_F(Corner, TheFirstPairLeavesWhatTheOthersNeed) {
   Setting all = setting({0, 1, 2}, {.policy = SpherePolicy::kSlab, .front_pairs = 0});
   const Placement tool = pressed({1.2, -0.3, -0.3});
@@ -233,7 +235,7 @@ TEST_F(Corner, OnePairThatIsStoppedLeavesTheAnswerIncomplete) {
   }
 }
 
-// A limit beyond what a double tells apart is divided too, and none of it is lost.
+// A limit above 2^53 is divided too, and no test is lost.
 TEST_F(Corner, AnyLimitMayBeDivided) {
   Setting all = setting({0, 1, 2});
   ToolContacts contacts = contacts_for(all.queries);
@@ -257,7 +259,7 @@ TEST_F(Corner, ADeadlineThatIsPastEndsEveryPair) {
   EXPECT_TRUE(all.queries.find(all.bodies, pressed({0.3, 0.2, 0.35}), enough, contacts)->complete);
 }
 
-// A pair without a query is no answer as soon as its balls overlap.
+// If the balls of a pair without a query overlap, the answer is incomplete.
 TEST_F(Corner, APairThatWasNotExpectedToMeetHoldsTheTool) {
   Setting one = setting({0});
   one.queries = PairQueries();
@@ -274,6 +276,45 @@ TEST_F(Corner, WithoutPairsThereIsNoAnswer) {
   PairQueries none;
   ToolContacts contacts;
   EXPECT_FALSE(none.find(HandBodies(), Placement(), {}, contacts));
+}
+
+// A tick with one unfinished pair of bodies. All other pairs are finished.
+
+bool is_same_place(const Placement& a, const Placement& b) {
+  return a.rotation == b.rotation && a.translation == b.translation;
+}
+
+// The tool is pressed on the floor, and far from the walls and from the loose ball. A few tests are
+// enough for these, and not for the floor, which is the first pair.
+TEST(UnfinishedPair, HoldsTheTool) {
+  const BuiltScene built = build_scene(five_bodies());
+  Simulation& simulation = *built.simulation;
+  const Placement start = simulation.tool_pose();
+  Placement last = start;
+  Tick tick{};
+  const auto go_down = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      last = simulation.tool_pose();
+      tick = simulation.tick(moved_by(start, {0, 0, -3 * std::min(1.0, i / 400.0)}));
+      ASSERT_FALSE(tick.held);
+    }
+  };
+  go_down(400);
+  ASSERT_GT(tick.leaf_pairs, 1);
+  ASSERT_GT(tick.wrench[2], 0.5);
+  ASSERT_FALSE(is_same_place(tick.tool, last)) << "it moves";
+  TickBudget few;
+  few.contacts.tests = 20;
+  for (int i = 0; i < 200; ++i) {
+    const Tick held = simulation.tick(moved_by(start, {0, 0, -3}), few);
+    ASSERT_TRUE(held.held) << i;
+    ASSERT_FALSE(held.contacts->complete);
+    ASSERT_TRUE(is_same_place(held.tool, last)) << "where all pairs were known last, tick " << i;
+    ASSERT_GT(held.wrench[2], 0.5) << "it gives no way";
+  }
+  for (int i = 0; i < 300; ++i) tick = simulation.tick(moved_by(start, {0, 0, -3}));
+  EXPECT_FALSE(tick.held);
+  EXPECT_FALSE(is_same_place(tick.tool, last)) << "it moves again";
 }
 
 }  // namespace

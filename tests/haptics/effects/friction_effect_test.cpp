@@ -2,11 +2,61 @@
 
 #include <gtest/gtest.h>
 
-#include "haptics/effects/pressed_tool.h"
+#include <algorithm>
+#include <vector>
+
+#include "haptics/effects/effect_case.h"
 #include "support/effort.h"
 
 namespace ist::test {
 namespace {
+
+inline constexpr double kPressStiffness = 1000;  // N/m, of the contact
+
+/// A tool that is pressed on a plane with the normal z. Its contact points stay in place on the
+/// tool.
+class PressedTool {
+ public:
+  /// Each of `feet`, in the tool's frame, carries its part of `load`, N.
+  PressedTool(const FrictionSettings& settings, std::vector<Eigen::Vector3d> feet, double load)
+      : contact_({kPressStiffness, 0.5}), friction_(settings, contact_), feet_(std::move(feet)) {
+    press(load);
+  }
+  PressedTool(const PressedTool&) = delete;  // friction_ refers to contact_
+  PressedTool& operator=(const PressedTool&) = delete;
+
+  void press(double load) {
+    load_ = load;
+    at_.contacts.clear();
+    for (const Eigen::Vector3d& foot : feet_) {
+      const double each = load / (kPressStiffness * static_cast<double>(feet_.size()));
+      at_.add_contact({at_.tool.rotation * foot, {0, 0, 1}, each, 1});
+    }
+  }
+  void lift() { at_.contacts.clear(); }
+  /// One tick. Returns the wrench at its end, as the law had it within the tick.
+  Vector6 move(const Vector6& motion) {
+    const Vector6 wrench = respond(friction_, at_, motion).wrench;
+    const bool touches = !at_.contacts.points().empty();
+    friction_.advance(at_.input(), motion);
+    at_.tool = at_.tool.moved(motion);
+    if (touches) press(load_);
+    return wrench;
+  }
+  Vector6 slide(double x, double y = 0) { return move(six({x, y, 0}, {0, 0, 0})); }
+  Vector6 turn(double angle) { return move(six({0, 0, 0}, {0, 0, angle})); }
+  /// The wrench of a tick without motion.
+  [[nodiscard]] Vector6 wrench() const { return respond(friction_, at_).wrench; }
+  [[nodiscard]] const EffectCase& at() const { return at_; }
+  [[nodiscard]] FrictionEffect& friction() { return friction_; }
+
+ private:
+  ContactEffect contact_;
+  FrictionEffect friction_;
+  std::vector<Eigen::Vector3d> feet_;
+  EffectCase at_;
+  double load_ = 0;
+};
 
 using Eigen::Vector3d;
 
@@ -14,7 +64,7 @@ constexpr double kAcross = 500;  // N/m
 constexpr FrictionSettings kGrip{
     .static_coefficient = 0.5, .dynamic_coefficient = 0.3, .stiffness = kAcross};
 constexpr double kLoad = 2;                        // N
-constexpr double kStatic = 0.5 * kLoad / kAcross;  // m: 2 mm, where it begins to slide
+constexpr double kStatic = 0.5 * kLoad / kAcross;  // m: at 2 mm it begins to slide
 constexpr double kDynamic = 0.3 * kLoad / kAcross;
 
 PressedTool one_foot(const FrictionSettings& settings = kGrip) {
@@ -56,7 +106,7 @@ TEST(FrictionEffect, SticksBelowItsLimitAndDoesNotDriftAtRest) {
 
 TEST(FrictionEffect, SlidesBeyondItsLimitWithWhatIsLeftOfItAgainstTheWay) {
   PressedTool tool = one_foot();
-  // Within the tick no more than µ_s of the load, however far it goes.
+  // Within a tick the force is at most µ_s of the load, over any distance.
   const Vector6 torn = tool.slide(3 * 0.6 * kStatic, 3 * 0.8 * kStatic);
   EXPECT_LE((torn - six(-0.5 * kLoad * Vector3d(0.6, 0.8, 0), Vector3d::Zero())).norm(), 1e-12);
   EXPECT_TRUE(tool.friction().slides());
@@ -110,7 +160,7 @@ TEST(FrictionEffect, TurnsBackThroughItsSpring) {
 TEST(FrictionEffect, HoldsATurnByPointsThatLieApart) {
   constexpr double kArm = 0.02;
   PressedTool tool(kGrip, {{kArm, 0, 0}, {-kArm, 0, 0}}, kLoad);
-  const double angle = 0.01;  // each foot goes 0.2 mm of the 1 mm at which it would slide
+  const double angle = 0.01;  // each foot goes 0.2 mm, and would slide at 1 mm
   tool.turn(angle);
   EXPECT_FALSE(tool.friction().slides());
   // The sine of an angle, in twice its half's tangent.
@@ -119,7 +169,7 @@ TEST(FrictionEffect, HoldsATurnByPointsThatLieApart) {
             1e-15);
   for (int i = 0; i < 20; ++i) tool.turn(angle);
   EXPECT_TRUE(tool.friction().slides());
-  // All the load at that arm, but for what an arc of 0.03 is shorter than its tangent.
+  // The whole load at that arm. An arc of 0.03 is a little shorter than its tangent.
   EXPECT_NEAR(tool.wrench()[5], -0.3 * kLoad * kArm, 1e-3 * 0.3 * kLoad * kArm);
   EXPECT_LE(tool.wrench().head<5>().norm(), 1e-12);
   // One point cannot hold it.
@@ -252,7 +302,7 @@ TEST(FrictionEffect, HasTheStiffnessOfItsSecantWhileItSlides) {
     const Vector6 motion = six(random.point(-1e-2, 1e-2), random.point(-1e-2, 1e-2));
     const Response response = respond(friction, c, motion);
     ASSERT_TRUE(is_symmetric_and_semidefinite(response.stiffness));
-    // From no stretch, the secant ends where the law is.
+    // From zero stretch, the secant ends on the law's curve.
     ASSERT_LE((response.stiffness * motion + response.wrench).norm(), 1e-12);
   }
   // Across the way of sliding the secant is the tangent.
@@ -263,6 +313,89 @@ TEST(FrictionEffect, HasTheStiffnessOfItsSecantWhileItSlides) {
   EXPECT_NEAR(given(1, 1), kAcross / 4, 1e-9);
   EXPECT_NEAR(measured(1, 1), given(1, 1), 1e-5);
   EXPECT_NEAR(measured(0, 0), 0, 1e-5);
+}
+
+constexpr FrictionSettings kHold{
+    .static_coefficient = 0.5, .dynamic_coefficient = 0.3, .stiffness = 500};
+
+TEST(FrictionEffect, TakesWorkOnEveryPathFromItsFirstTickOn) {
+  Random random(71);
+  for (int path = 0; path < samples(20); ++path) {
+    PressedTool tool(kHold, {Vector3d::Zero()}, 1);
+    double work = 0;
+    int slid = 0;
+    for (int i = 0; i < 2000; ++i) {
+      tool.press(random.uniform(0.1, 2));
+      const Vector6 motion =
+          six({random.uniform(-1, 1) * 4e-4, random.uniform(-1, 1) * 4e-4, 0}, {0, 0, 0});
+      work -= tool.move(motion).dot(motion);
+      slid += tool.friction().slides();
+      ASSERT_GE(work, -1e-15) << i;
+    }
+    EXPECT_GT(slid, 20);
+    EXPECT_LT(slid, 1980);
+    EXPECT_GT(work, 1e-4);
+  }
+}
+
+TEST(FrictionEffect, LosesWhatItSaysOnAClosedPath) {
+  // Sliding there and back costs µ_d N times the way, less the energy of the spring at the turns.
+  constexpr double kWeight = 2, kWay = 0.05;
+  constexpr int kSteps = 5000;
+  FrictionSettings even = kHold;
+  even.static_coefficient = even.dynamic_coefficient;
+  PressedTool tool(even, {Vector3d::Zero()}, kWeight);
+  double work = 0;
+  for (int lap = 0; lap < 4; ++lap) {
+    const double step = (lap % 2 == 0 ? kWay : -kWay) / kSteps;
+    for (int i = 0; i < kSteps; ++i) work -= tool.slide(step)[0] * step;
+  }
+  const double force = 0.3 * kWeight, stretch = force / even.stiffness;
+  // Each change of direction lets the spring go and draws it anew, over twice the stretch, in which
+  // the force is 0 on the mean; the first draws it once.
+  const double expected = 4 * kWay * force - 3 * 2 * stretch * force - 0.5 * stretch * force;
+  EXPECT_NEAR(work, expected, 1e-3 * expected);
+}
+
+TEST(FrictionEffect, TakesWorkThoughTheToolTurns) {
+  Random random(72);
+  for (int path = 0; path < samples(10); ++path) {
+    PressedTool tool(kHold, {{0.01, 0, 0}, {-0.01, 0.008, 0}, {0, -0.012, 0}}, 1);
+    double work = 0, least = 0;
+    Vector3d heading = Vector3d::Zero();
+    for (int i = 0; i < 2000; ++i) {
+      // Wandering, slowly enough that it sticks and slides by turns.
+      heading = 0.95 * heading + 0.3 * random.point(-1, 1);
+      const Vector6 motion =
+          six({4e-5 * heading[0], 4e-5 * heading[1], 0}, {0, 0, 3e-3 * heading[2]});
+      work -= tool.move(motion).dot(motion);
+      least = std::min(least, work);
+    }
+    EXPECT_GT(work, 1e-3);
+    EXPECT_GE(least, -1e-6 * work);
+  }
+}
+
+TEST(FrictionEffect, ComesToRestAfterEverySlide) {
+  Random random(73);
+  for (int path = 0; path < samples(20); ++path) {
+    PressedTool tool(kHold, {{0.01, 0, 0}, {-0.01, 0.008, 0}, {0, -0.012, 0}}, 1);
+    const Vector6 motion = six({random.uniform(-1, 1) * 1e-3, random.uniform(-1, 1) * 1e-3, 0},
+                               {0, 0, random.uniform(-1, 1) * 0.05});
+    for (int i = 0; i < 20; ++i) tool.move(motion);
+    ASSERT_TRUE(tool.friction().slides());
+    for (int i = 0; i < 5; ++i) tool.slide(0);
+    ASSERT_FALSE(tool.friction().slides());
+    const Placement anchor = *tool.friction().anchor();
+    const double held = tool.wrench().norm();
+    for (int i = 0; i < 1000; ++i) {
+      tool.slide(0);
+      ASSERT_EQ(tool.friction().anchor()->rotation, anchor.rotation);
+      ASSERT_EQ(tool.friction().anchor()->translation, anchor.translation);
+    }
+    EXPECT_GT(held, 0);
+    EXPECT_NEAR(tool.wrench().norm(), held, 1e-9 * held);
+  }
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ist/tree/sphere_tree.h"
+#include "query/contacts/contact_cases.h"
 #include "query/query_cases.h"
 #include "support/shapes.h"
 
@@ -23,7 +25,8 @@ Solid sphere(double radius) {
           [radius](const Vector3d&, double least) { return radius > least; }};
 }
 
-// Its faces are of two triangles, however fine: they are exact. Smooth where no edge is near.
+// Each face has two triangles at any edge length, because they are exact. It is smooth away from
+// its edges.
 Solid block(const Vector3d& half) {
   return {[half](double) { return box(-half, half); },
           [half](const Vector3d& p) {
@@ -38,7 +41,7 @@ Solid block(const Vector3d& half) {
           }};
 }
 
-// A cylinder where `inner` is 0. What is asked for is the wall, the inner one where there is one.
+// A tube, or a cylinder if `inner` is 0. The distance is to its inner wall, or to its only one.
 Solid wall(double inner, double outer, double half) {
   return {[=](double edge) { return tube(inner, outer, half, edge); },
           [=](const Vector3d& p) {
@@ -60,7 +63,8 @@ Solid ring(double radius, double tube) {
       },
       [=](const Vector3d& p) { return std::hypot(std::hypot(p[0], p[1]) - radius, p[2]) - tube; },
       [=](const Vector3d& p, double least) {
-        // Of the tube, and along the ring: R / cos + r, negative on the inside.
+        // The radii of curvature of the tube, and along the ring: R / cos + r, negative on the
+        // inside.
         const double out = (std::hypot(p[0], p[1]) - radius) / tube;
         return tube > least && (out == 0 || std::abs(radius / out + tube) > least);
       }};
@@ -73,7 +77,7 @@ Solid turned(const Solid& solid, const Matrix3d& by) {
           [=](const Vector3d& p, double least) { return solid.smooth(by.transpose() * p, least); }};
 }
 
-// Both turned, and the pose with them: `pose` is that of the bodies as they are.
+// Turns both bodies and their pose. `pose` is the pose before the turn.
 ClosedForm turned(const ClosedForm& form, const Matrix3d& fixed, const Matrix3d& moving) {
   return {form.name, turned(form.fixed, fixed), turned(form.moving, moving), [=](double depth) {
             return pose_of(fixed, Vector3d::Zero()) * form.pose(depth) *
@@ -134,6 +138,52 @@ Vector3d ClosedForm::normal(const Isometry3d& placed, const Vector3d& at) const 
 const std::vector<ClosedForm>& closed_forms() {
   static const std::vector<ClosedForm> forms = make();
   return forms;
+}
+
+void FormErrors::add(const FormErrors& other) {
+  points += other.points;
+  smooth += other.smooth;
+  finite = finite && other.finite;
+  depth = std::max(depth, other.depth);
+  depths += other.depths;
+  normal = std::max(normal, other.normal);
+  normals += other.normals;
+  deepest = std::max(deepest, other.deepest);
+}
+
+SphereTree tree_of_solid(const Solid& solid, double voxel_size) {
+  BuildOptions options;
+  options.voxel_size = voxel_size;
+  return build_tree(solid.mesh(voxel_size), options);
+}
+
+FormErrors form_errors(const ClosedForm& form, const SphereTree& fixed, const SphereTree& moving,
+                       SpherePolicy policy, double depth, std::size_t most) {
+  constexpr double kDegrees = 57.29577951308232;
+  const double s = fixed.voxel_size();
+  const Eigen::Isometry3d pose = form.pose(depth * s);
+  FormErrors errors;
+  for (const Contact& p : find_contacts(fixed, moving, policy, pose, most).points) {
+    ++errors.points;
+    errors.finite = errors.finite && p.position.allFinite() && p.normal.allFinite() &&
+                    std::isfinite(p.depth) && std::isfinite(p.weight);
+    errors.deepest = std::max(errors.deepest, p.depth / s);
+    if (p.weight < 0.05 * s * s) continue;  // normals that cancel have no direction
+    if (!form.fixed.smooth(p.position, 10 * s) ||
+        !form.moving.smooth(pose.inverse() * p.position, 10 * s)) {
+      continue;
+    }
+    const double truth = std::clamp(form.depth(pose, p.position), -2 * s, s);
+    const double off = std::abs(p.depth - truth) / s;
+    const double cosine = p.normal.dot(form.normal(pose, p.position));
+    const double tilt = kDegrees * std::acos(std::min(1.0, cosine));
+    ++errors.smooth;
+    errors.depth = std::max(errors.depth, off);
+    errors.depths += off;
+    errors.normal = std::max(errors.normal, tilt);
+    errors.normals += tilt;
+  }
+  return errors;
 }
 
 }  // namespace ist::test

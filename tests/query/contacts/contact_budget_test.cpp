@@ -1,11 +1,17 @@
-// Contact points under a budget: the same where it does not end, cut where it was said, and true.
-
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
+#include "ist/query/contacts/contact_reducer.h"
+#include "ist/query/contacts/contact_visitor.h"
+#include "ist/query/relative_pose.h"
+#include "ist/query/traversal/search.h"
+#include "ist/query/traversal/search_pose.h"
 #include "ist/query/workers/sharing.h"
+#include "ist/tree/tree_parts.h"
 #include "query/contacts/contact_cases.h"
 #include "query/scenes.h"
 #include "query/test_clocks.h"
@@ -13,6 +19,9 @@
 
 namespace ist::test {
 namespace {
+
+// Contacts under a budget. A large budget changes nothing, and a small one cuts at its number of
+// tests.
 
 constexpr std::array kPolicies = {SpherePolicy::kTable, SpherePolicy::kSlab};
 
@@ -43,7 +52,8 @@ TEST(ContactsWithinABudget, WithoutEndAreThoseOfThePlainQuery) {
   }
 }
 
-// What a stopped query spent stops the next one at the same place: so a recording is made again.
+// A budget of the tests that a stopped query spent stops the next query at the same place, so a
+// recording can be repeated.
 TEST(ContactsWithinABudget, StopWhereTheyStoppedBefore) {
   int stopped = 0, with_sums = 0;
   for (const Scene& scene : Scenes{solids()[0], solids()[2], shells()}) {
@@ -104,8 +114,8 @@ TEST(ContactsWithinADeadline, StopWhereTheyStoppedBefore) {
   EXPECT_GT(stopped, 5);
 }
 
-// Two workers share what has a deadline; an answer that the clock ends early depends on no
-// worker, and is the same with a budget of as many tests.
+// Two workers share a query with a deadline. If the clock ends it early, the answer does not depend
+// on the worker, and equals the answer with a budget of as many tests.
 TEST(ContactsOfTwoWorkers, AreThoseOfOneAndStopWhereTheyStoppedBefore) {
   IST_SLOW();
   const Scene& scene = jaws();
@@ -154,7 +164,7 @@ TEST(ContactsWithinADeadline, ThatIsPastAreNone) {
     EXPECT_EQ(found.result.level, std::max(scene.fixed.depth(), scene.moving.depth()));
     EXPECT_TRUE(found.points.empty());
     EXPECT_EQ(found.sums.weight, 0);
-    // Roots that are apart need no time.
+    // A query of separate roots ends at once.
     const FoundContacts apart =
         find_contacts_within(query, points, shift({9, 0, 0}), {.deadline = Budget::Clock::now()});
     EXPECT_TRUE(apart.result.complete);
@@ -162,8 +172,9 @@ TEST(ContactsWithinADeadline, ThatIsPastAreNone) {
   }
 }
 
-// The ball of radius 1 beside the block's face at x = 0.9, so far apart along x: the gap holds it
-// whatever was spent, closer the more that was; and measured it is no wider than unmeasured.
+// A ball of radius 1 beside the block's face at x = 0.9, at this distance along x. The interval
+// holds the distance for every budget, and narrows with it. A measured interval is at most as wide
+// as an unmeasured one.
 TEST(ContactsWithinABudget, TellATrueDistance) {
   const Scene& scene = solids()[0];
   for (const SpherePolicy policy : kPolicies) {
@@ -207,6 +218,141 @@ TEST(ContactsWithinABudget, AreNoneAtNoRigidMotion) {
     EXPECT_TRUE(none.points.empty());
     EXPECT_EQ(none.sums.weight, 0);
   }
+}
+
+// A search for contacts stops by the budget contract of every verb.
+
+bool same_end(const QueryResult& a, const QueryResult& b) {
+  return a.sphere_tests == b.sphere_tests && a.level == b.level && a.complete == b.complete &&
+         a.distance->lower == b.distance->lower && a.distance->upper == b.distance->upper;
+}
+
+// A contact search stops at the same pair as the list of leaf pairs. interval_test checks the upper
+// end of its distance.
+TEST(StoppedContacts, StopWhereTheListStops) {
+  int stopped = 0, with_some = 0;
+  for (const Scene& scene : solids()) {
+    for (const SpherePolicy policy : kSpherePolicies) {
+      for (const int workers : {1, 2}) {
+        Query query(scene.fixed, scene.moving, options_of(policy, "", workers));
+        ContactManifold points(scene.fixed, scene.moving, policy, {.margin = 2});
+        for (const double x : {0.0, 1.6, 1.9, 2.6}) {
+          Eigen::Isometry3d at = scene.pose;
+          at.translation()[0] += x;
+          const QueryResult whole = query.contacts(at, points);
+          for (const std::uint64_t tests : {0u, 1u, 9u, 100u, 900u, 7'000u, 40'000u, 10'000'000u}) {
+            const Budget budget{.tests = tests};
+            const QueryResult told = query.contacts(at, points, budget);
+            EXPECT_LE(told.sphere_tests, std::max<std::uint64_t>(tests, 1));
+            const QueryResult list = query.leaf_pairs(at, {}, budget);
+            if (told.complete) {
+              EXPECT_TRUE(same_end(told, whole));
+              EXPECT_EQ(told.leaf_pairs, list.leaf_pairs);
+              continue;
+            }
+            ++stopped;
+            with_some += told.leaf_pairs > 0 ? 1 : 0;
+            EXPECT_EQ(told.sphere_tests, list.sphere_tests);
+            EXPECT_EQ(told.level, list.level);
+            EXPECT_EQ(told.distance->lower, list.distance->lower);
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(stopped, 100);
+  EXPECT_GT(with_some, 10);
+}
+
+// A reach does not widen the interval of the distance either.
+TEST(StoppedContacts, TellNoWiderIntervalWithAReach) {
+  int stopped = 0;
+  for (const Scene& scene : solids()) {
+    for (const SpherePolicy policy : kSpherePolicies) {
+      Query query(scene.fixed, scene.moving, options_of(policy));
+      ContactManifold plain(scene.fixed, scene.moving, policy, {.margin = 2});
+      for (const double reach : {0.375, 1.0}) {
+        ManifoldOptions options;
+        options.reach = reach;
+        ContactManifold wide(scene.fixed, scene.moving, policy, options);
+        for (const double x : {0.0, 1.6, 1.9, 2.6}) {
+          Eigen::Isometry3d at = scene.pose;
+          at.translation()[0] += x;
+          const DistanceInterval roots = *query.contacts(at, plain, {.tests = 0}).distance;
+          for (const std::uint64_t tests : {0u, 9u, 900u, 7'000u}) {
+            const QueryResult told = query.contacts(at, wide, {.tests = tests});
+            if (!told.complete) {
+              EXPECT_TRUE(wide.points().empty());
+            }
+            EXPECT_GE(told.distance->lower, roots.lower);
+            EXPECT_LE(told.distance->upper, roots.upper);
+            stopped += told.complete ? 0 : 1;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(stopped, 50);
+}
+
+TEST(StoppedContacts, EndAtTheFirstLookAfterTheDeadline) {
+  const ScopedBudgetClock clock(LateClock::now);
+  const Scene& scene = solids()[0];
+  for (const SpherePolicy policy : kSpherePolicies) {
+    Query query(scene.fixed, scene.moving, options_of(policy));
+    ContactManifold points(scene.fixed, scene.moving, policy, {.margin = 2});
+    std::uint64_t before = 0;
+    for (int allowed = 0; allowed < 40; ++allowed) {
+      const QueryResult stopped = query.contacts(scene.pose, points, LateClock::budget_of(allowed));
+      EXPECT_FALSE(stopped.complete);
+      EXPECT_EQ(LateClock::looks, allowed + 1);
+      EXPECT_LE(stopped.sphere_tests, before + BudgetMeter::kUnwatchedTests + 1);
+      const ContactSums sums = points.sums();
+      EXPECT_TRUE(
+          same_end(query.contacts(scene.pose, points, {.tests = stopped.sphere_tests}), stopped));
+      EXPECT_EQ(points.sums().weight, sums.weight);
+      EXPECT_EQ(points.sums().pairs, sums.pairs);
+      before = stopped.sphere_tests;
+    }
+  }
+}
+
+// Counts the tests and pairs from one look at the clock to the next.
+struct Watched : ContactVisitor {
+  Watched(const SearchPose& pose, ContactOutput& sink, const BudgetMeter& meter)
+      : ContactVisitor(pose, sink, meter), sink_(sink) {}
+  Advanced advance(const SearchBatch& batch) noexcept {
+    const std::uint64_t looks = FakeClock::looks, pairs = sink_.count();
+    const Advanced made = ContactVisitor::advance(batch);
+    EXPECT_EQ(FakeClock::looks, looks + 1);
+    most_tests = std::max(most_tests, made.tests);
+    most_pairs = std::max(most_pairs, sink_.count() - pairs);
+    return made;
+  }
+  std::uint64_t most_tests = 0, most_pairs = 0;
+
+ private:
+  ContactOutput& sink_;
+};
+
+TEST(StoppedContacts, ReadTheClockOftenEnough) {
+  const Scene& scene = shells();
+  const SpherePolicy policy = SpherePolicy::kSlab;
+  const SearchPlan plan(scene.fixed, scene.moving, policy);
+  const Kernels& kernels = select_kernels("");
+  Search search(plan, kernels, 1 << 16);
+  detail::ContactReducer reducer(scene.fixed, scene.moving, policy, {});
+  const SearchPose pose = to_float(
+      *relative_pose(scene.pose, parts_of(scene.fixed).lattice, parts_of(scene.moving).lattice),
+      lengths_of(scene.fixed, policy), lengths_of(scene.moving, policy));
+  ContactOutput sink(plan, kernels, pose, reducer.adder(), reducer.leaf_sums());
+  const Budget budget{.deadline = Budget::Clock::time_point(std::chrono::seconds(1))};
+  const ScopedBudgetClock clock(FakeClock::now);
+  Watched watched(pose, sink, BudgetMeter(budget));
+  EXPECT_EQ(search.run(watched), plan.steps().size());
+  EXPECT_LE(watched.most_tests, 500u);  // as Budget states
+  EXPECT_LE(watched.most_pairs, 512u);
+  EXPECT_GT(watched.most_pairs, 32u);
 }
 
 }  // namespace

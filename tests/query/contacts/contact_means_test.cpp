@@ -11,7 +11,6 @@
 #include "ist/query/contacts/contact_reducer.h"
 #include "ist/tree/sphere_tree.h"
 #include "query/contacts/contact_cases.h"
-#include "query/contacts/pair_sums.h"
 #include "query/contacts/plain_contacts.h"
 #include "query/scenes.h"
 #include "support/shapes.h"

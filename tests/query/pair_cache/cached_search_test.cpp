@@ -1,19 +1,25 @@
-// How a cache is carried on: which ticks it answers, and where the next one comes from.
-
 #include "ist/query/pair_cache/cached_search.h"
 
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "ist/query/relative_pose.h"
+#include "ist/query/traversal/search.h"
+#include "ist/query/traversal/search_pose.h"
+#include "ist/tree/tree_parts.h"
 #include "query/pair_cache/cache_case.h"
+#include "query/scenes.h"
 #include "support/effort.h"
 
 namespace ist::test {
 namespace {
 
-// A carried cache, with fresh searches where it has no answer.
+// A cache is carried from tick to tick. It answers some ticks, and others make the next cache.
+
+// A carried cache, and a fresh search if the cache has no answer.
 class CarriedCache {
  public:
   CarriedCache(const CacheCase& bodies, std::size_t front_pairs)
@@ -22,7 +28,7 @@ class CarriedCache {
         carried_(bodies.fixed, bodies.moving, bodies.policy, bodies.plan, bodies.kernels,
                  CacheOptions{1 << 16, front_pairs, 1, std::chrono::nanoseconds(0)}) {}
 
-  // One tick. Returns the number of leaf pairs, which is that of a fresh search.
+  // One tick. Returns the number of leaf pairs. A fresh search finds the same number.
   std::size_t tick(const Eigen::Isometry3d& pose) {
     const RelativePose at = bodies_.relative(pose);
     const SearchPose from = to_float(at, bodies_.fixed_lengths, bodies_.moving_lengths);
@@ -153,7 +159,7 @@ TEST_P(CarriedCacheOf, ThatIsFullIsFollowedByOneWithLessSlack) {
   EXPECT_LT(widest, 0.3 * bodies_.voxel);
 }
 
-// Nor is it tried again in the next tick where a deadline ended the query.
+// If a deadline ended the query, the next tick does not try it again.
 TEST_P(CarriedCacheOf, ThatIsFullIsNotTriedInEachTick) {
   const RelativePose at = bodies_.relative(scene_.pose);
   PairCache all(1 << 16);
@@ -172,7 +178,7 @@ TEST_P(CarriedCacheOf, ThatIsFullIsNotTriedInEachTick) {
   EXPECT_EQ(carried.find(at, 0, {}).tests, 0u);
 }
 
-// A clearance grows where bodies stay apart, and is an empty cache.
+// A clearance is an empty cache. It grows while the bodies stay apart.
 TEST_P(CarriedCacheOf, IsEmptyWhereBodiesAreApart) {
   CarriedCache cache(bodies_, 1 << 12);
   for (int i = 0; i < 60; ++i) {
@@ -183,6 +189,99 @@ TEST_P(CarriedCacheOf, IsEmptyWhereBodiesAreApart) {
   EXPECT_GE(cache.found().upper, 0.4);
   EXPECT_LE(cache.found().cache->extent, 0.4);
   EXPECT_GT(cache.answered(), 40);
+}
+
+// A search in parts finds the same pairs as a search in one go, in the same order. The ends of the
+// parts and the size of the memory make no difference.
+
+class ResumedSearch : public ::testing::TestWithParam<SpherePolicy> {
+ protected:
+  // Returns all leaf pairs of a search in parts. Part `part` makes `tests(part)` tests.
+  template <class Tests>
+  static std::vector<LeafPair> in_parts(Search& search, const SearchPlan& plan,
+                                        const SearchPose& pose, std::size_t room,
+                                        const Tests& tests) {
+    std::vector<LeafPair> out(room);
+    LeafPairSink sink(plan, select_kernels(""), out);
+    SearchPosition at = search.roots();
+    for (int part = 0; !at.is_end() && part < 1'000'000; ++part) {
+      PairLister lister(pose, sink, BudgetMeter({.tests = tests(part)}));
+      at = search.resume(at, lister);
+    }
+    EXPECT_TRUE(at.is_end());
+    EXPECT_LE(sink.count(), room);
+    out.resize(sink.count());
+    return out;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Policies, ResumedSearch, ::testing::ValuesIn(kSpherePolicies),
+                         [](const auto& policy) { return std::string(to_string(policy.param)); });
+
+TEST_P(ResumedSearch, FindsTheSamePairsInTheSameOrder) {
+  Random random(1);
+  std::size_t found = 0;
+  for (const Scene& scene : solids()) {
+    const SearchPlan plan(scene.fixed, scene.moving, GetParam());
+    const TreeLengths fixed = lengths_of(scene.fixed, GetParam()),
+                      moving = lengths_of(scene.moving, GetParam());
+    const RelativePose relative =
+        *relative_pose(scene.pose, parts_of(scene.fixed).lattice, parts_of(scene.moving).lattice);
+    // With the largest margin the rows of inner steps are longer than a piece.
+    for (const double voxels : {0.0, 1.0, 5.0}) {
+      const double voxel = std::min(scene.fixed.voxel_size(), scene.moving.voxel_size());
+      const SearchPose pose = to_float(relative, fixed, moving, voxels * voxel);
+      Search wide(plan, select_kernels(""), 1 << 16);
+      std::vector<LeafPair> all(1 << 20);
+      LeafPairSink sink(plan, select_kernels(""), all);
+      PairLister lister(pose, sink);
+      wide.run(lister);
+      ASSERT_LE(sink.count() + 100, all.size());
+      all.resize(sink.count());
+      found += all.size();
+      for (const std::size_t memory : {std::size_t{1} << 16, std::size_t{300}, std::size_t{1}}) {
+        SCOPED_TRACE(scene.name + ", " + std::to_string(voxels) + " voxels, memory for " +
+                     std::to_string(memory));
+        Search search(plan, select_kernels(""), memory);
+        for (const std::uint64_t tests : {448u, 449u, 1000u, 30'000u}) {
+          EXPECT_EQ(in_parts(search, plan, pose, all.size() + 100, [&](int) { return tests; }), all)
+              << tests;
+        }
+        // Some of these parts are too small for any test.
+        EXPECT_EQ(
+            in_parts(search, plan, pose, all.size() + 100, [&](int) { return random.below(2000); }),
+            all);
+        if (HasFailure()) return;
+      }
+    }
+  }
+  EXPECT_GT(found, 50'000u);
+}
+
+// A search that was left unfinished does not change the next one.
+TEST_P(ResumedSearch, IsForgottenByTheNextOne) {
+  const Scene& scene = solids()[1];
+  const SearchPlan plan(scene.fixed, scene.moving, GetParam());
+  const RelativePose relative =
+      *relative_pose(scene.pose, parts_of(scene.fixed).lattice, parts_of(scene.moving).lattice);
+  const SearchPose pose = to_float(relative, lengths_of(scene.fixed, GetParam()),
+                                   lengths_of(scene.moving, GetParam()), 0.2);
+  Search search(plan, select_kernels(""), 1 << 16);
+  std::vector<LeafPair> expected;
+  for (std::uint64_t tests = 0; tests < 20'000; tests = tests * 5 / 4 + 100) {
+    std::vector<LeafPair> out(1 << 20), unused(1 << 20);
+    LeafPairSink cut(plan, select_kernels(""), unused), sink(plan, select_kernels(""), out);
+    if (tests > 0) {
+      PairLister some(pose, cut, BudgetMeter({.tests = tests}));
+      static_cast<void>(search.resume(search.roots(), some));
+    }
+    PairLister all(pose, sink);
+    ASSERT_TRUE(search.resume(search.roots(), all).is_end());
+    out.resize(sink.count());
+    if (tests == 0) expected = out;
+    ASSERT_GT(out.size(), 100u);
+    ASSERT_EQ(out, expected) << tests;
+  }
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "ist/query/results.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
-#include "support/exact_polygon.h"
+#include "support/exact.h"
 #include "support/rigid_pose.h"
 
 namespace ist::test {

@@ -10,7 +10,7 @@
 #include "ist/mesh/mesh.h"
 #include "ist/query/results.h"
 #include "ist/query/triangles/triangle_distance.h"  // kTriangleDistanceError alone
-#include "support/exact_polygon.h"
+#include "support/exact.h"
 
 namespace ist::test {
 

@@ -4,11 +4,13 @@
 #include <vector>
 
 #include "ist/query/query.h"
+#include "ist/query/triangles/pair_list.h"
 #include "query/triangles/meeting_pairs.h"
 #include "query/triangles/triangle_tree.h"
 #include "simd/guarded.h"
 #include "simd/targets.h"
 #include "support/effort.h"
+#include "support/random.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -145,7 +147,8 @@ TEST_F(ManyPairs, SpansTooShortHoldTheFirst) {
   }
 }
 
-// A pose that is no motion has no pairs; nor do bodies whose roots are apart, in one test.
+// A pose that is not rigid gives zero pairs. Bodies with separate roots give zero pairs after one
+// test.
 TEST_F(ManyPairs, OfWhatDoesNotTouchAreNone) {
   Query query = query_with();
   std::vector<TrianglePair> pairs(10);
@@ -184,6 +187,33 @@ TEST(Touches, WithoutTrianglesIsAtMostPossible) {
   bad.matrix()(0, 0) = 2;
   EXPECT_EQ(query.intersects(bad).status, QueryStatus::kInvalidPose);
   EXPECT_EQ(Query(exact, exact).intersects(bad).status, QueryStatus::kInvalidPose);
+}
+
+TEST(PairList, HoldsTheFirstPairsInOrder) {
+  Random random(3);
+  for (const std::size_t scratch : {0u, 70u, 5000u}) {
+    PairList list(scratch);
+    for (const std::uint32_t range : {4u, 300u, 70'000u, 4'000'000'000u}) {
+      for (const std::size_t count : {0u, 1u, 63u, 64u, 65u, 700u, 3000u}) {
+        std::vector<TrianglePair> wanted;
+        for (std::size_t k = 0; k < count; ++k) {
+          wanted.push_back({random.below(range), random.below(range)});
+        }
+        for (const std::size_t room : {0u, 1u, 64u, 699u, 700u, 4000u}) {
+          Guarded<TrianglePair> out(room, 1);
+          list.begin(out.span());
+          for (const TrianglePair& pair : wanted) list.add(pair);
+          list.finish();
+          std::vector<TrianglePair> sorted = wanted;
+          std::sort(sorted.begin(), sorted.end());
+          ASSERT_EQ(list.count(), count);
+          const auto kept = static_cast<std::ptrdiff_t>(std::min(room, count));
+          ASSERT_TRUE(std::equal(sorted.begin(), sorted.begin() + kept, out.data()));
+          ASSERT_TRUE(out.intact());
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -2,9 +2,12 @@
 
 #include <vector>
 
+#include "ist/query/inside.h"
 #include "ist/query/query.h"
+#include "ist/tree/sphere_tree.h"
 #include "query/triangles/triangle_tree.h"
 #include "simd/targets.h"
+#include "support/conformal.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -52,7 +55,7 @@ TEST_F(Witness, ChangesNoAnswerButTheEndsOfADistance) {
     EXPECT_GE(gap.upper, truth.upper);
     EXPECT_LE(gap.upper - gap.lower, kTolerance);
     other_ends += gap.upper != of_fresh.upper ? 1U : 0U;
-    // Of no tolerance the ends are the same, whatever was asked before.
+    // Without a tolerance the ends of the distance do not depend on earlier questions.
     const DistanceInterval sharp = query.distance(pose, 0).distance;
     EXPECT_EQ(sharp.lower, truth.lower);
     EXPECT_EQ(sharp.upper, truth.upper);
@@ -93,7 +96,7 @@ TEST_F(Witness, IsIgnoredWhereTestsAreLimited) {
     const DistanceResult b = fresh.distance(pose, 0.05, budget);
     ASSERT_EQ(a.distance.lower, b.distance.lower);
     ASSERT_EQ(a.distance.upper, b.distance.upper);
-    static_cast<void>(query.intersects(pose));  // leaves a witness where they meet
+    static_cast<void>(query.intersects(pose));  // leaves a witness if they meet
     ASSERT_EQ(query.intersects(pose, budget).sphere_tests,
               Query(fixed_, moving_).intersects(pose, budget).sphere_tests);
   }
@@ -128,6 +131,40 @@ TEST_F(Witness, CostsLittleAfterALeap) {
       fresh.forget();
       const std::uint64_t tests = query.distance(near, tolerance).sphere_tests;
       EXPECT_LE(tests, 3 * fresh.distance(near, tolerance).sphere_tests) << far.transpose();
+    }
+  }
+}
+
+constexpr double kVoxelSize = 0.25;
+
+SphereTree triangle_tree_of(const TriangleMesh& mesh) {
+  BuildOptions options;
+  options.voxel_size = kVoxelSize;
+  options.keep_triangles = true;
+  BuildReport report;
+  SphereTree tree = build_tree(mesh, options, &report);
+  EXPECT_EQ(report.turned_components, 0u);
+  return tree;
+}
+
+// Conformal surfaces have the most pairs. The answer is as certain.
+TEST(Conformal, TheGapIsKnownAtAnyTime) {
+  for (const ConformalPair& pair : conformal_pairs(3, 4, 0.3)) {
+    SCOPED_TRACE(pair.name);
+    const SphereTree fixed = triangle_tree_of(pair.fixed), moving = triangle_tree_of(pair.moving);
+    Query query(fixed, moving);
+    const Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    const DistanceResult gap = query.distance(pose, 0);
+    EXPECT_NEAR(gap.distance.lower, pair.gap, 0.01 * pair.gap);
+    EXPECT_NEAR(gap.distance.upper, pair.gap, 0.01 * pair.gap);
+    EXPECT_EQ(query.intersects(pose).answer, ist::Answer::kNo);
+    EXPECT_EQ(InsideTest(pair.fixed, pair.moving).at(pose),
+              pair.name == "shells" || pair.name == "inside" ? Inside::kMoving : Inside::kNone);
+    std::vector<LeafPair> leaf_pairs(1 << 20);
+    for (const std::uint64_t tests : {1u, 100u, 10'000u, 100'000'000u}) {
+      const QueryResult result = query.leaf_pairs(pose, leaf_pairs, {.tests = tests});
+      EXPECT_LE(result.distance->lower, 1.01 * pair.gap);
+      EXPECT_GE(result.distance->upper, 0.99 * pair.gap);
     }
   }
 }

@@ -12,8 +12,8 @@
 #include "ist/base/parallel.h"
 #include "ist/query/workers/resident_worker.h"
 #include "query/workers/worker_cases.h"
+#include "support/effort.h"
 #include "support/largest_allocation.h"
-#include "support/skip.h"
 #include "support/system_calls.h"
 
 namespace ist::test {
