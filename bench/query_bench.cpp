@@ -16,7 +16,7 @@
 
 #include "ist/query/query.h"
 #include "ist/query/workers/resident_worker.h"
-#include "ist/query/workers/sharing.h"
+#include "ist/query/workers/shared_work.h"
 #include "simd/dispatch.h"
 #include "support/bodies.h"
 #include "support/latencies.h"

@@ -5,7 +5,7 @@
 #include <iostream>
 #include <span>
 
-#include "ist/query/workers/sharing.h"
+#include "ist/query/workers/shared_work.h"
 #include "support/pacer.h"
 
 namespace ist::bench {

@@ -42,7 +42,7 @@ MUTANTS = [
            [(HAPTICS + "effects/contact_effect.h", "kLead = 4", "kLead = 1")],
            ["haptics_test ContactEffect*:*Passiv*:*Wall*"]),
     Mutant("brakes-on-the-way-out", "damping also brakes a separating tool",
-           [(HAPTICS + "effects/braking.h", "if (!(approach > 0)) continue;", "")],
+           [(HAPTICS + "effects/damping_effect.h", "if (!(approach > 0)) continue;", "")],
            ["haptics_test *Damping*:*Proximity*:*Approach*"]),
     Mutant("friction-never-slides", "sticking friction has no limit",
            [(FRICTION, "grip.sliding = pull > (1 + kRest) * limit(grip, force);", "grip.sliding = pull > 1e9;")],

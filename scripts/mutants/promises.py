@@ -117,7 +117,7 @@ MUTANTS = [
             ("src/ist/query/query.cpp", "  LeafPairSink sink(s.plan, s.kernels, out);\n",
              "  sched_yield();\n  LeafPairSink sink(s.plan, s.kernels, out);\n")], ["quiet_test SystemCalls.*"]),
     Mutant("truncation-untold", "an answer whose span was too short does not say so",
-           [("src/ist/query/traversal/leaf_pair_sink.h", "return stream_ == nullptr && count_ > out_.size();",
+           [("src/ist/query/traversal/visitor.h", "return stream_ == nullptr && count_ > out_.size();",
              "return stream_ == nullptr && count_ > ~std::size_t{0} - 1;")], ["search_test *Memory*:*EveryEngine*"]),
     Mutant("overflow-forgotten", "a search forgets the pairs behind those for which a frontier had room",
            [("src/ist/query/traversal/search.h", "  out.moving_count = next.moving_count;\n",

@@ -105,7 +105,7 @@ MUTANTS = [
            [(MEASURE_INL, "const float spare = 0x1p-20F;", "const float spare = -0x1p-6F;")],
            [KERNELS]),
     Mutant("gap-raised", "the lower end of a gap is eight pads above the float bound",
-           [("src/ist/query/query_distance.cpp", "std::max(lower, nearest.least())",
+           [("src/ist/query/query.cpp", "std::max(lower, nearest.least())",
              "std::max(lower, nearest.least() + 8 * pad_of(plain))")],
            ["triangles_test QueryDistance*"]),
     Mutant("budget-overdrawn", "tests spent before do not count",

@@ -11,7 +11,7 @@ MUTANTS = [
            [(WORLD + "broad_phase.cpp", "  there_[body] = 1;\n  sorted_ = false;\n", "  there_[body] = 1;\n")],
            ["world_test World.DependsOnNoEarlierPose:BroadPhase.*"]),
     Mutant("near-pairs-as-found", "pairs are listed in the order in which the sweep finds them",
-           [(WORLD + "near_set.cpp", "  std::sort(order_.begin(), order_.end(),\n"
+           [(WORLD + "world_state.cpp", "  std::sort(order_.begin(), order_.end(),\n"
              "            [](const Entry& a, const Entry& b) { return a.bodies < b.bodies; });\n", "")],
            ["world_test World.ListsPairsInOrder"]),
     Mutant("worlds-pairs-in-plain-double", "the pose of a pair is composed in plain double",
@@ -54,7 +54,7 @@ MUTANTS = [
              "state.in_use.test_and_set(std::memory_order_acquire) ? &state.in_use : &state")],
            ["world_test WorldBudget.*"]),
     Mutant("world-allocates", "a world makes the list of near pairs anew in each call",
-           [(WORLD + "near_set.cpp", "void NearSet::clear() noexcept {\n  pairs_.clear();\n",
+           [(WORLD + "world_state.cpp", "void NearSet::clear() noexcept {\n  pairs_.clear();\n",
              "void NearSet::clear() noexcept {\n  pairs_.clear();\n  pairs_.shrink_to_fit();\n  pairs_.reserve(room_);\n")],
            ["quiet_test Allocations.AWorldMakesNone"]),
     Mutant("least-distance-as-the-caller-rounds", "the least distance of a world is computed in the caller's arithmetic",

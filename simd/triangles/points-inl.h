@@ -8,12 +8,12 @@
 
 #include <hwy/highway.h>
 
+#include "simd/triangles/cluster_step.h"
 #include "simd/triangles/nodes-inl.h"
-#include "simd/triangles/point_step.h"
 #include "simd/triangles/triangle_lanes.h"
 #include "simd/triangles/triangles-inl.h"
 
-// Vector twins of the scalar forms in simd/triangles/points_scalar.cpp.
+// Vector twins of the scalar forms in simd/triangles/clusters_scalar.cpp.
 HWY_BEFORE_NAMESPACE();
 namespace ist::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;

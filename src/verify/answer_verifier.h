@@ -9,7 +9,7 @@
 
 #include "ist/query/results.h"
 #include "ist/tree/sphere_tree.h"
-#include "verify/leaf_grid.h"
+#include "verify/leaf_geometry.h"
 #include "verify/read_bounds.h"
 
 namespace ist {

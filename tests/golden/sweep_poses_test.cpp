@@ -3,8 +3,7 @@
 #include <vector>
 
 #include "golden/hasher.h"
-#include "ist/sweep/pose_box.h"
-#include "ist/sweep/pose_grid.h"
+#include "ist/sweep/pose_source.h"
 
 namespace ist::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "ist/base/error.h"
-#include "ist/query/workers/sharing.h"
+#include "ist/query/workers/shared_work.h"
 #include "ist/tree/sphere_tree.h"
 #include "query/scenes.h"
 #include "simd/guarded.h"

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cstdint>
 
-#include "ist/query/budget_clock.h"
+#include "ist/query/traversal/budget_meter.h"
 
 namespace ist::test {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "ist/query/contacts/contact_rates.h"
+#include "ist/query/contacts/contact_reducer.h"
 #include "ist/query/traversal/search_plan.h"
 #include "query/query_cases.h"
 #include "simd/contact_step.h"

@@ -8,7 +8,7 @@
 #include "ist/query/inside.h"
 #include "ist/query/query.h"
 #include "ist/query/reference/reference_query.h"
-#include "ist/query/workers/sharing.h"
+#include "ist/query/workers/shared_work.h"
 #include "ist/tree/bound_builder.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/sphere_tree.h"

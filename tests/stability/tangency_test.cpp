@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "ist/query/workers/sharing.h"
+#include "ist/query/workers/shared_work.h"
 #include "stability/all_engines.h"
 #include "support/effort.h"
 #include "support/exact_query.h"

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "ist/base/checksum.h"
-#include "ist/sweep/file_hash.h"
 #include "ist/sweep/npy_file.h"
 #include "ist/sweep/sweep_record.h"
 #include "support/errors.h"

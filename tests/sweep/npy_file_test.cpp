@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "ist/sweep/npy_poses.h"
 #include "support/errors.h"
 #include "support/temp_dir.h"
 

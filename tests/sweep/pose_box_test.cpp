@@ -1,7 +1,5 @@
 // Random poses: those of numpy's numbers, uniform, and the same in every order of asking.
 
-#include "ist/sweep/pose_box.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -9,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "ist/sweep/pose_source.h"
 #include "support/effort.h"
 
 namespace ist::test {

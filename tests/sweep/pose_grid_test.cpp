@@ -1,11 +1,11 @@
 // Poses on a grid: their order, their ends, and their motions.
 
-#include "ist/sweep/pose_grid.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
+
+#include "ist/sweep/pose_source.h"
 
 namespace ist::test {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "ist/sweep/file_hash.h"
+#include "ist/base/checksum.h"
 #include "support/errors.h"
 #include "sweep/sweep_case.h"
 

@@ -12,7 +12,6 @@
 #include "query/query_cases.h"
 #include "support/effort.h"
 #include "support/shapes.h"
-#include "verify/leaf_grid.h"
 
 namespace ist::test {
 namespace {

@@ -1,4 +1,4 @@
-"""The order of a mesh's triangles in the library's tree of clusters, by the rule that triangle_order.h states."""
+"""The order of a mesh's triangles in the library's tree of clusters, by the rule that triangle_clusters.h states."""
 import numpy as np
 
 WIDTH = 16

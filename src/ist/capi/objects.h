@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "ist/capi/follower.h"
-#include "ist/capi/handles/handle.h"
+#include "ist/capi/handles/handle_table.h"
 #include "ist/capi/sized_struct.h"
 #include "ist/mesh/mesh.h"
 #include "ist/query/query.h"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "ist/base/progress.h"
-#include "ist/measure/inside_parts.h"
 #include "ist/measure/point_search.h"
 #include "ist/query/results.h"
 

@@ -8,7 +8,7 @@
 
 #include "ist/base/float_environment.h"
 #include "ist/base/rigid_move.h"
-#include "ist/measure/inside_parts.h"
+#include "ist/measure/point_search.h"
 #include "ist/measure/require.h"
 
 namespace ist {

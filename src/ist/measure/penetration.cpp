@@ -12,7 +12,7 @@
 #include "ist/base/pose.h"
 #include "ist/base/rigid_move.h"
 #include "ist/measure/depth_search.h"
-#include "ist/measure/inside_parts.h"
+#include "ist/measure/point_search.h"
 #include "ist/measure/require.h"
 
 namespace ist {

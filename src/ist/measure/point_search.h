@@ -3,7 +3,12 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
+#include "ist/base/progress.h"
+#include "ist/base/rigid_move.h"
+#include "ist/measure/signed_distance.h"
 #include "ist/mesh/nearest_point.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
@@ -35,5 +40,27 @@ class PointSearch {
   Eigen::Vector3d origin_;
   double size_;  // of the tree's coordinates, and of its origin's
 };
+
+/// A surface, and the body in which it may lie.
+struct SurfaceInBody {
+  const SphereTree& surface;
+  const SphereTree& body;
+  const PointSearch& search;  ///< of the body
+  RigidMove to_body;          ///< from mesh coordinates of the surface to those of the body
+};
+
+/// Returns whether a component of the surface lies inside the body: by one vertex of each.
+/// Precondition: the surfaces do not intersect.
+[[nodiscard]] bool is_any_inside(const SurfaceInBody& side);
+
+/// Returns the answer for a point that is farther than the reach.
+[[nodiscard]] SurfaceDistance beyond_reach();
+
+/// Measures points as signed_distance() does, on all cores; the first of them, where `proceed` ends
+/// it. `search` is the tree's; the points are finite.
+[[nodiscard]] std::vector<SurfaceDistance> distances_of(const SphereTree& tree,
+                                                        const PointSearch& search,
+                                                        std::span<const Eigen::Vector3d> points,
+                                                        double reach, const Proceed& proceed = {});
 
 }  // namespace ist

@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "ist/base/error.h"
-#include "ist/measure/distances_of.h"
+#include "ist/measure/point_search.h"
 
 namespace ist {
 namespace {

@@ -7,7 +7,6 @@
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/rigid_move.h"
-#include "ist/measure/distances_of.h"
 #include "ist/measure/point_search.h"
 #include "ist/measure/require.h"
 

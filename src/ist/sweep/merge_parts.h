@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "ist/base/progress.h"
-#include "ist/sweep/columns.h"
+#include "ist/sweep/row_layout.h"
 #include "ist/sweep/sweep_folder.h"
 
 namespace ist {

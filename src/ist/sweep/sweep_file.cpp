@@ -8,14 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "ist/base/checksum.h"
 #include "ist/base/direction.h"
 #include "ist/base/float_environment.h"
 #include "ist/scene/table_reader.h"
 #include "ist/scene/toml_document.h"
-#include "ist/sweep/file_hash.h"
-#include "ist/sweep/npy_poses.h"
-#include "ist/sweep/pose_box.h"
-#include "ist/sweep/pose_grid.h"
+#include "ist/sweep/npy_file.h"
+#include "ist/sweep/pose_source.h"
 #include "ist/tree/tree_stream.h"
 
 namespace ist {

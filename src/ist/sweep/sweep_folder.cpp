@@ -8,8 +8,8 @@
 #include <system_error>
 #include <utility>
 
+#include "ist/base/checksum.h"
 #include "ist/base/error.h"
-#include "ist/sweep/file_hash.h"
 #include "ist/sweep/npy_file.h"
 #include "ist/sweep/start_mark.h"
 #include "ist/sweep/sweep_record.h"

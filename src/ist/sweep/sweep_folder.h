@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ist/sweep/columns.h"
+#include "ist/sweep/row_layout.h"
 
 namespace ist {
 

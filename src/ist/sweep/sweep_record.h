@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ist/sweep/columns.h"
+#include "ist/sweep/row_layout.h"
 #include "ist/sweep/sweep_folder.h"
 
 /// The JSON files of a sweep's folder.

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "ist/base/parallel.h"
-#include "ist/mesh/clusters/triangle_order.h"
 #include "query/query_cases.h"
 #include "support/effort.h"
 #include "support/random.h"

@@ -10,7 +10,7 @@
 #include "ist/query/relative_pose.h"
 #include "ist/query/traversal/search.h"
 #include "ist/query/traversal/search_pose.h"
-#include "ist/query/workers/sharing.h"
+#include "ist/query/workers/shared_work.h"
 #include "ist/tree/tree_parts.h"
 #include "query/contacts/contact_cases.h"
 #include "query/scenes.h"

@@ -13,7 +13,7 @@
 #include <optional>
 #include <thread>
 
-#include "ist/query/workers/sharing.h"
+#include "ist/query/workers/shared_work.h"
 #include "query/pair_cache/kept_answers.h"
 #include "query/pair_cache/motions.h"
 #include "query/workers/stall.h"

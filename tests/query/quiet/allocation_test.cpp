@@ -4,7 +4,7 @@
 #include <new>
 
 #include "ist/query/reference/reference_query.h"
-#include "ist/query/workers/sharing.h"
+#include "ist/query/workers/shared_work.h"
 #include "query/quiet/allocations.h"
 #include "query/scenes.h"
 #include "query/triangles/triangle_tree.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ist/query/workers/resident_worker.h"
-#include "ist/query/workers/sharing.h"
+#include "ist/query/workers/shared_work.h"
 #include "ist/query/world/world.h"
 #include "query/quiet/allocations.h"
 #include "query/quiet/locks.h"

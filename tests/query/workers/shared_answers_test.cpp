@@ -9,7 +9,7 @@
 
 #include "ist/query/query.h"
 #include "ist/query/workers/shared_search.h"
-#include "ist/query/workers/sharing.h"
+#include "ist/query/workers/shared_work.h"
 #include "query/contacts/contact_cases.h"
 #include "query/query_cases.h"
 #include "query/scenes.h"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "ist/query/query.h"
-#include "ist/query/workers/sharing.h"
+#include "ist/query/workers/shared_work.h"
 #include "query/workers/stall.h"
 
 namespace ist::test {

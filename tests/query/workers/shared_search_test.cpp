@@ -12,7 +12,7 @@
 #include "ist/query/contacts/contact_reducer.h"
 #include "ist/query/relative_pose.h"
 #include "ist/query/traversal/search_pose.h"
-#include "ist/query/workers/sharing.h"
+#include "ist/query/workers/shared_work.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 #include "query/contacts/contact_cases.h"

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "ist/mesh/triangles_meet.h"
-#include "ist/query/triangles/moved_triangles.h"
 #include "ist/query/triangles/triangle_distance.h"
+#include "ist/query/triangles/triangle_visitors.h"
 #include "simd/dispatch.h"
 #include "simd/targets.h"
 #include "simd/triangles/cluster_cases.h"

@@ -1,5 +1,3 @@
-#include "ist/mesh/format/vtk_labels.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "answers/occlusion/labels/label_files.h"
 #include "ist/base/error.h"
 #include "ist/base/printable.h"
+#include "ist/mesh/format/vtk_surface.h"
 
 namespace ist::answers {
 namespace {

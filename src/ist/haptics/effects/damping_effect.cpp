@@ -1,7 +1,5 @@
 #include "ist/haptics/effects/damping_effect.h"
 
-#include "ist/haptics/effects/braking.h"
-
 namespace ist {
 
 void DampingEffect::respond(const EffectInput& input, const Vector6& motion,

@@ -1,6 +1,6 @@
 #include "ist/haptics/effects/proximity_effect.h"
 
-#include "ist/haptics/effects/braking.h"
+#include "ist/haptics/effects/damping_effect.h"
 
 namespace ist {
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "ist/mesh/format/other_formats.h"
-#include "ist/mesh/format/stl_layout.h"
 #include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/import/imported_mesh.h"
 

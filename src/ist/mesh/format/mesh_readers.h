@@ -8,6 +8,12 @@
 
 namespace ist {
 
+/// The parts of a binary STL, bytes: a header, the number of facets, and the facets.
+inline constexpr std::size_t kStlHeaderBytes = 80;
+inline constexpr std::size_t kStlCountEnd = 84;
+inline constexpr std::size_t kStlNormalBytes = 12;  ///< at the begin of a facet
+inline constexpr std::size_t kStlFacetBytes = 50;
+
 struct VtkLabels;
 
 /// The formats that read_content() reads, for messages and helps.

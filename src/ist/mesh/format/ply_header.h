@@ -5,7 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "ist/mesh/format/number_type.h"
 #include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/mesh.h"
 

@@ -9,7 +9,6 @@
 #include "ist/mesh/format/frame_tags.h"
 #include "ist/mesh/format/mesh_builder.h"
 #include "ist/mesh/format/mesh_readers.h"
-#include "ist/mesh/format/stl_layout.h"
 #include "ist/mesh/format/text_reader.h"
 
 namespace ist {

@@ -1,17 +1,138 @@
 #include "ist/query/triangles/triangle_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "ist/base/float_rounding.h"
 #include "ist/base/ordered_vector.h"
-#include "ist/query/triangles/nearest_beam.h"
-#include "ist/query/triangles/nearest_pair.h"
+#include "ist/mesh/clusters/triangle_clusters.h"
+#include "ist/query/traversal/budget_meter.h"
+#include "ist/query/triangles/triangle_distance.h"
 #include "ist/query/triangles/triangle_visitors.h"
 #include "ist/tree/tree_parts.h"
+#include "simd/triangles/cluster_step.h"
 
 namespace ist {
 namespace {
+
+constexpr std::size_t kBeamWidth = 6;
+
+// Pairs of clusters that are near each other, best first, for the first bound of a distance. The
+// constructor goes down both trees with the kBeamWidth best pairs of nodes of each level. There
+// are no pairs if the budget ended it.
+class NearestBeam {
+ public:
+  struct NodePair {
+    std::uint32_t fixed, moving;
+    float score;
+  };
+
+  NearestBeam(const TriangleClusters& fixed, const TriangleClusters& moving,
+              const ClusterKernels& kernels, const ClusterPose& pose, BudgetMeter& meter) noexcept;
+
+  [[nodiscard]] const NodePair* begin() const noexcept { return pairs_.data(); }
+  [[nodiscard]] const NodePair* end() const noexcept { return pairs_.data() + count_; }
+
+ private:
+  std::array<NodePair, kBeamWidth> pairs_{};
+  std::size_t count_ = 0;
+};
+
+using NodePair = NearestBeam::NodePair;
+
+// The best pairs so far, best first; of equal ones the earlier.
+struct Best {
+  std::array<NodePair, kBeamWidth> pairs{};
+  std::size_t count = 0;
+
+  void add(const NodePair& pair) noexcept {
+    if (count == kBeamWidth && !(pair.score < pairs[count - 1].score)) return;
+    std::size_t at = count < kBeamWidth ? count++ : count - 1;
+    for (; at > 0 && pair.score < pairs[at - 1].score; --at) pairs[at] = pairs[at - 1];
+    pairs[at] = pair;
+  }
+};
+
+// Finds the nearest pair, or one that is farther by at most the tolerance. Only nodes are left out
+// for the tolerance's sake; of the triangles that are compared the nearest is found, so that the
+// answer does not depend on how the kernels decide.
+class NearestPair {
+ public:
+  static constexpr bool kMostFirst = false, kMeasuresRest = true;
+
+  NearestPair(const VisitorContext& context, double tolerance, double longest_edge,
+              double nearest) noexcept
+      : context_(context),
+        tolerance_(tolerance > 0 ? tolerance : 0),  // a NaN too
+        longest_edge_(longest_edge),
+        nearest_(nearest) {}
+
+  [[nodiscard]] double distance() const noexcept { return nearest_; }
+  // Returns the pair that has the distance, the first by its indices, if any was measured.
+  [[nodiscard]] const std::optional<TriangleIds>& ids() const noexcept { return ids_; }
+  [[nodiscard]] double error() const noexcept {
+    return nearest_ > 0 ? kTriangleDistanceError * (longest_edge_ + nearest_) : 0;
+  }
+  // Returns the distance from which on nothing was looked for: so that the interval is no wider
+  // than the tolerance, for all rounding of its ends.
+  [[nodiscard]] double within() const noexcept {
+    return std::max(0.0, nearest_ * (1 + 0x1p-49) + 2 * error() - tolerance_);
+  }
+  [[nodiscard]] float reach() const noexcept {
+    return rounded_up(within() + double{context_.step.pose.error});
+  }
+  bool visit(const ClusterPairs& clusters) noexcept {
+    const float margin = rounded_up(2 * error() + double{context_.step.pose.error});
+    Reach reaches{rounded_up(nearest_) + margin, margin};
+    return in_turns(
+        clusters,
+        [&](const ClusterPairs& rest) {
+          return context_.kernels.near_clusters(context_.step, rest, reaches, context_.batch,
+                                                context_.found);
+        },
+        [&] {
+          const bool in_time = measure_found();
+          context_.found.open.count = 0;
+          return in_time && nearest_ > 0;
+        });
+  }
+  void measure(TriangleIds ids) noexcept {
+    const TriangleCorners a = corners_of(context_.meshes.fixed, ids.fixed);
+    const TriangleCorners b = context_.meshes.moving[ids.moving];
+    const double boxes = box_distance_squared(a, b);
+    const double enough = nearest_ + 2 * error();
+    if (boxes > enough * enough || surely_farther(a, b, enough)) return;
+    const double distance =
+        boxes == 0 && triangles_meet(a, b) ? 0 : std::sqrt(distance_squared(a, b));
+    if (distance > nearest_ || (distance == nearest_ && ids_ && !(ids < *ids_))) return;
+    nearest_ = distance;
+    ids_ = ids;
+  }
+
+ private:
+  // First the pair that may be the nearest, so that few others may still be nearer. Returns false
+  // where the deadline came before the end.
+  bool measure_found() noexcept {
+    const FoundTriangles& found = context_.found;
+    const std::size_t count = found.open.count;
+    const auto first = static_cast<std::size_t>(
+        std::min_element(found.squares, found.squares + count) - found.squares);
+    if (count > 0) measure(found.open[first]);
+    std::size_t measured = 0;
+    for (std::size_t k = 0; k < count && nearest_ > 0; ++k) {
+      const double enough = nearest_ + 2 * error() + double{context_.step.pose.error};
+      if (k == first || double{found.squares[k]} > enough * enough) continue;
+      if (context_.is_late(measured++)) return false;
+      measure(found.open[k]);
+    }
+    return true;
+  }
+
+  VisitorContext context_;
+  double tolerance_, longest_edge_, nearest_;
+  std::optional<TriangleIds> ids_;
+};
 
 // The test of the roots, which counts.
 constexpr std::uint64_t kRootTests = 1;
@@ -43,6 +164,46 @@ double longest_edge(const TriangleMesh& mesh) {
     }
   }
   return std::sqrt(squared);
+}
+
+NearestBeam::NearestBeam(const TriangleClusters& fixed, const TriangleClusters& moving,
+                         const ClusterKernels& kernels, const ClusterPose& pose,
+                         BudgetMeter& meter) noexcept {
+  int fixed_level = fixed.root_level(), moving_level = moving.root_level();
+  Best best;
+  best.add({0, 0, 0});
+  TurnedBlock turned;
+  alignas(64) float scores[kClusterWidth];
+  while (fixed_level > 0 || moving_level > 0) {
+    const bool fixed_goes = fixed_level >= moving_level, moving_goes = moving_level >= fixed_level;
+    Best next;
+    for (std::size_t k = 0; k < best.count; ++k) {
+      const NodePair pair = best.pairs[k];
+      // A tree that stays has its node's siblings beside the node.
+      const std::uint32_t moving_block = moving_goes ? pair.moving : pair.moving / kClusterWidth;
+      const std::uint32_t fixed_block = fixed_goes ? pair.fixed : pair.fixed / kClusterWidth;
+      const int below_moving = moving_level - (moving_goes ? 1 : 0);
+      const int below_fixed = fixed_level - (fixed_goes ? 1 : 0);
+      kernels.turn_nodes(moving.bounds(below_moving)[moving_block], pose, turned);
+      for (std::uint32_t m = 0; m < moving.child_count(below_moving, moving_block); ++m) {
+        const std::uint32_t moving_node = kClusterWidth * moving_block + m;
+        if (!moving_goes && moving_node != pair.moving) continue;
+        if (!meter.allows(kClusterWidth)) return;
+        meter.spend(kClusterWidth);
+        kernels.score_children(turned, m, fixed.bounds(below_fixed)[fixed_block], scores);
+        for (std::uint32_t f = 0; f < fixed.child_count(below_fixed, fixed_block); ++f) {
+          const std::uint32_t fixed_node = kClusterWidth * fixed_block + f;
+          if (!fixed_goes && fixed_node != pair.fixed) continue;
+          next.add({fixed_node, moving_node, scores[f]});
+        }
+      }
+    }
+    best = next;
+    fixed_level -= fixed_goes ? 1 : 0;
+    moving_level -= moving_goes ? 1 : 0;
+  }
+  pairs_ = best.pairs;
+  count_ = best.count;
 }
 
 }  // namespace

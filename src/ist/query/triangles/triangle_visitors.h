@@ -1,18 +1,44 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "ist/base/rigid_move.h"
+#include "ist/mesh/mesh.h"
 #include "ist/mesh/triangles_meet.h"
 #include "ist/query/results.h"
-#include "ist/query/triangles/moved_triangles.h"
 #include "ist/query/triangles/pair_list.h"
 #include "simd/triangles/cluster_step.h"
 
 /// The purposes of a search of clusters for triangles that intersect: visitors of a ClusterSearch.
 namespace ist {
+
+[[nodiscard]] inline TriangleCorners corners_of(const TriangleMesh& mesh,
+                                                std::uint32_t triangle) noexcept {
+  const Triangle& t = mesh.triangles[triangle];
+  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+}
+
+/// The triangles of a mesh at a pose. All exact answers are about these doubles.
+class MovedTriangles {
+ public:
+  /// Precondition: `pose` is rigid. Holds a reference to the mesh.
+  MovedTriangles(const TriangleMesh& mesh, const Eigen::Isometry3d& pose) noexcept
+      : mesh_(mesh), moved_(pose) {}
+
+  [[nodiscard]] TriangleCorners operator[](std::uint32_t triangle) const noexcept {
+    const Triangle& t = mesh_.triangles[triangle];
+    return {moved_(mesh_.vertices[t[0]]), moved_(mesh_.vertices[t[1]]),
+            moved_(mesh_.vertices[t[2]])};
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  RigidMove moved_;
+};
 
 /// Two meshes, the moving one at a pose.
 struct Meshes {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -10,10 +12,92 @@
 
 #include "ist/base/float_environment.h"
 #include "ist/query/query_state.h"
+#include "ist/query/world/body_pose.h"
 #include "ist/query/world/broad_phase.h"
-#include "ist/query/world/near_set.h"
-#include "ist/query/world/pair_table.h"
 #include "ist/query/world/world.h"
+
+namespace ist {
+
+/// The place of each pair's query, of all pairs of some bodies.
+class PairTable {
+ public:
+  static constexpr std::uint32_t kNoQuery = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint32_t kIgnored = kNoQuery - 1;
+
+  /// Adds a body, whose pairs with all others have no query.
+  void add() {
+    places_.insert(places_.end(), bodies_, kNoQuery);
+    ++bodies_;
+  }
+  /// Precondition: a < b < the number of bodies.
+  [[nodiscard]] std::uint32_t& operator[](BodyPair pair) noexcept { return places_[at(pair)]; }
+  [[nodiscard]] std::uint32_t operator[](BodyPair pair) const noexcept { return places_[at(pair)]; }
+  /// Takes all queries out.
+  void clear() noexcept {
+    std::replace_if(
+        places_.begin(), places_.end(), [](auto at) { return at < kIgnored; }, kNoQuery);
+  }
+  /// Returns the number of all pairs, ignored or not.
+  [[nodiscard]] std::size_t size() const noexcept { return places_.size(); }
+
+ private:
+  static std::size_t at(BodyPair pair) noexcept {
+    return std::size_t{pair.b} * (pair.b - 1) / 2 + pair.a;
+  }
+  std::vector<std::uint32_t> places_;
+  std::size_t bodies_ = 0;
+};
+
+/// A pair of bodies at their poses, for the world's own use.
+struct PairAtPose {
+  BodyPair bodies;
+  QueryStatus status;      ///< as WorldPair has it before the pair is asked
+  DistanceInterval roots;  ///< as WorldPair has it
+  bool overlap;            ///< the roots are no farther apart than they need be to be near
+  std::uint32_t place;     ///< of its query; PairTable::kNoQuery without one
+  BodyPose pose;           ///< of the later body in the first one's coordinates
+};
+
+/// The pairs that are near, in bounded memory: where there is no room for all, those with a query
+/// come before those without, and then the first by BodyPair. So it does not matter in which order
+/// pairs are found.
+class NearSet {
+ public:
+  NearSet() = default;
+  /// Reserves memory for so many pairs.
+  explicit NearSet(std::size_t room) : room_(room) {
+    pairs_.reserve(room);
+    order_.reserve(room);
+  }
+
+  void clear() noexcept;
+  void add(const PairAtPose& pair) noexcept;
+  /// Ends the additions: sorts.
+  void finish() noexcept;
+
+  /// Returns the number of pairs added.
+  [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+  /// Returns the number of pairs kept.
+  [[nodiscard]] std::size_t size() const noexcept { return order_.size(); }
+  [[nodiscard]] const PairAtPose& operator[](std::size_t k) const noexcept {
+    return pairs_[order_[k].at];
+  }
+
+ private:
+  struct Entry {
+    bool prepared;
+    BodyPair bodies;
+    std::uint32_t at;
+  };
+  static bool is_before(const Entry& a, const Entry& b) noexcept;
+
+  std::size_t room_ = 0;
+  std::vector<PairAtPose> pairs_;
+  std::vector<Entry> order_;  // while full a heap, with the last one on top
+  std::uint64_t count_ = 0;
+};
+
+}  // namespace ist
 
 namespace ist::detail {
 

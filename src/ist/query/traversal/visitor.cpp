@@ -1,4 +1,4 @@
-#include "ist/query/traversal/leaf_pair_sink.h"
+#include "ist/query/traversal/visitor.h"
 
 #include <algorithm>
 
