@@ -3,18 +3,26 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "ablation/comparison.h"
-#include "ablation/mask_spheres.h"
+#include "ist/tree/bounds.h"
+#include "ist/tree/enclosing_ball.h"
+#include "ist/tree/implicit_ball.h"
+#include "ist/tree/linear_octree.h"
+#include "ist/tree/lookup_table_search.h"
 #include "ist/tree/tree_parts.h"
 #include "simd/dispatch.h"
 #include "support/bodies.h"
@@ -22,6 +30,68 @@
 
 namespace ist::bench {
 namespace {
+
+// The smallest ball round the children's cubes of a mask, in half edges of the node's cube from
+// its centre.
+using SphereOfMask = Ball (*)(std::uint8_t mask);
+
+constexpr double kSixth = 1.0 / 6;
+
+Ball in_half_edges(const TableBall& ball, std::size_t code) {
+  return {{kSixth * ball.x, kSixth * ball.y, kSixth * ball.z}, kTableRadii[code]};
+}
+
+// By the code in the table's word, as a search takes it.
+// From the table that the compiler made.
+Ball looked_up(std::uint8_t mask) {
+  return in_half_edges(kLookupTable[mask], kTableWords[mask] >> 9);
+}
+
+// By enclosing_ball() of the cubes' corners, to 1e-9 of the radius.
+Ball enclosed(std::uint8_t mask) {
+  std::array<Eigen::Vector3d, 27> corners;
+  std::size_t count = 0;
+  const std::uint32_t taken = lookup_table_detail::corners_of(mask);
+  for (int i = 0; i < 27; ++i) {
+    if ((taken >> i & 1) == 0) continue;
+    const auto [x, y, z] = lookup_table_detail::corner(i);
+    corners[count++] = {kSixth * x, kSixth * y, kSixth * z};
+  }
+  return enclosing_ball(std::span(corners).first(count), 1e-9);
+}
+
+// As the compiler makes the table: the best of 125 centres, in whole numbers.
+Ball searched(std::uint8_t mask) {
+  const TableBall ball = lookup_table_detail::smallest_ball(mask);
+  return in_half_edges(ball, radius_code(ball));
+}
+
+constexpr std::pair<const char*, SphereOfMask> kWaysToMakeSpheres[] = {
+    {"1-lookup", looked_up}, {"2-enclosing_ball", enclosed}, {"3-search", searched}};
+
+// Masks of nodes just above the leaves, at most `count`, spread evenly over the tree. Ends the
+// program where for any of them the ways to make a sphere differ by more than 1e-6 half edges.
+std::vector<std::uint8_t> some_masks(const LinearOctree& octree, std::size_t count) {
+  const std::span<const std::uint8_t> all = octree.masks(1);
+  std::vector<std::uint8_t> masks;
+  const std::size_t step = std::max<std::size_t>(1, all.size() / count);
+  for (std::size_t i = 0; i < all.size() && masks.size() < count; i += step) {
+    masks.push_back(all[i]);
+  }
+  for (const std::uint8_t mask : masks) {
+    const Ball expected = looked_up(mask);
+    for (const SphereOfMask make : {enclosed, searched}) {
+      const Ball ball = make(mask);
+      const double apart =
+          std::max((ball.centre - expected.centre).norm(), std::abs(ball.radius - expected.radius));
+      if (apart <= 1e-6) continue;
+      std::cerr << "ablation: the sphere of mask " << int{mask} << " differs by " << apart
+                << " half edges from that of the table\n";
+      std::exit(1);
+    }
+  }
+  return masks;
+}
 
 using Search = Parts::Search;
 using Steps = std::vector<std::pair<std::string, Parts>>;

@@ -5,6 +5,9 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
 #include <cstdlib>
 #include <functional>
 #include <memory>
@@ -20,11 +23,51 @@
 #include "support/bodies.h"
 #include "support/effort.h"
 #include "support/latencies.h"
-#include "support/noisy_neighbour.h"
 #include "support/stopwatch.h"
 
 namespace ist::bench {
 namespace {
+
+// While it lives, as many threads as the machine has cores stream through kMegabytes each, which
+// no core's own cache holds, and compute on it, at the priority of ordinary threads. Made before a
+// thread asks for a higher one, which they would begin with.
+class NoisyNeighbour {
+ public:
+  static constexpr std::size_t kMegabytes = 64;
+  /// @param there whether there is one at all
+  explicit NoisyNeighbour(bool there);
+  ~NoisyNeighbour();
+  NoisyNeighbour(const NoisyNeighbour&) = delete;
+  NoisyNeighbour& operator=(const NoisyNeighbour&) = delete;
+
+ private:
+  std::atomic<bool> stop_{false};
+  std::atomic<unsigned> at_work_{0};
+  std::vector<std::thread> threads_;
+};
+
+NoisyNeighbour::NoisyNeighbour(bool there) {
+  constexpr std::size_t kBlock = 4096, kBlocks = kMegabytes * 1'000'000 / sizeof(double) / kBlock;
+  if (!there) return;
+  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  for (unsigned i = 0; i < cores; ++i) {
+    threads_.emplace_back([this] {
+      std::vector<double> numbers(kBlocks * kBlock, 1.0);
+      at_work_.fetch_add(1);
+      for (std::size_t block = 0; !stop_.load(std::memory_order_relaxed); ++block) {
+        double* const first = numbers.data() + block % kBlocks * kBlock;
+        for (std::size_t n = 0; n < kBlock; ++n) first[n] = 0.75 * first[n] + 0.5;
+      }
+      benchmark::DoNotOptimize(numbers.data());
+    });
+  }
+  while (at_work_.load() < cores) std::this_thread::yield();
+}
+
+NoisyNeighbour::~NoisyNeighbour() {
+  stop_.store(true);
+  for (std::thread& thread : threads_) thread.join();
+}
 
 using Clock = std::chrono::steady_clock;
 using std::chrono::nanoseconds;

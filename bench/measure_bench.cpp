@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
+#include <map>
 #include <vector>
 
 #include "ist/base/parallel.h"
@@ -21,13 +23,109 @@
 #include "ist/measure/signed_distance.h"
 #include "ist/mesh/pseudonormals.h"
 #include "ist/query/query.h"
-#include "measure/by_accuracy.h"
 #include "support/bodies.h"
+#include "support/effort.h"
+#include "support/latencies.h"
+#include "support/stopwatch.h"
 
 namespace ist::bench {
 namespace {
 
-constexpr double kVoxelSize = 0.4;                            // which does not matter
+using Pose = Eigen::Isometry3d;
+
+constexpr double kVoxelSize = 0.4;  // no answer about triangles depends on it
+constexpr double kRounding = 2e-6;  // mm
+
+struct Interval {
+  double lower, upper;
+  bool complete;
+};
+
+// How a question is asked: at a pose, to within a tolerance.
+using Ask = std::function<Interval(Query&, const Pose&, double)>;
+
+Interval touch(Query& query, const Pose& pose, double) {
+  const Answer answer = query.intersects(pose).answer;
+  const double yes = answer == Answer::kYes ? 1 : 0;
+  return {yes, yes, answer == Answer::kYes || answer == Answer::kNo};
+}
+
+Interval distance(Query& query, const Pose& pose, double tolerance) {
+  const auto result = query.distance(pose, tolerance);
+  return {result.distance.lower, result.distance.upper, result.complete};
+}
+
+Interval depth(Query& query, const Pose& pose, double tolerance) {
+  const Penetration found = penetration(query, pose, tolerance);
+  return {found.lower, found.upper, found.complete && found.status == Penetration::Status::kDone};
+}
+
+std::vector<double> tolerances() {
+  if (quick()) return {0.1, 0.01};
+  return {1, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001};
+}
+
+struct Question {
+  const char* name;
+  Ask ask;
+};
+
+void measure(benchmark::State& state, const Question& question, double tolerance, double dz) {
+  const ScopedThreadLimit one(1);
+  const auto& [fixed, moving] = triangle_trees(kVoxelSize);
+  Query query(fixed, moving);
+  const Pose pose = closing(dz);
+  const Interval finest = question.ask(query, pose, tolerances().back());
+  const int turns = rounds(31);
+  Latencies times;
+  Interval found{};
+  for (auto _ : state) {
+    for (int turn = 0; turn < turns; ++turn) {
+      query.forget();
+      const Stopwatch watch;
+      found = question.ask(query, pose, tolerance);
+      times.add(watch.microseconds());
+    }
+    state.SetIterationTime(1e-6 * times.quantile(0.5));
+  }
+  if (!found.complete) {
+    state.SkipWithError("an answer is not complete");
+    return;
+  }
+  if (found.lower > finest.upper + kRounding || found.upper < finest.lower - kRounding) {
+    state.SkipWithError("an interval does not hold what the finest tolerance found");
+    return;
+  }
+  times.report(state);
+  state.counters["lower"] = found.lower;
+  state.counters["upper"] = found.upper;
+  state.counters["n"] = turns;
+  state.SetLabel(pair_name());
+}
+
+void add(const Question& question, double tolerance) {
+  for (const double dz : kClosing) {
+    benchmark::RegisterBenchmark(
+        fmt::format("by_accuracy/{}/{:g}/{:g}", question.name, tolerance, dz).c_str(),
+        [=](benchmark::State& state) { measure(state, question, tolerance, dz); })
+        ->Unit(benchmark::kMicrosecond)
+        ->UseManualTime()
+        ->Iterations(1);
+  }
+}
+
+// by_accuracy/touch/0/POSE, by_accuracy/distance/TOLERANCE/POSE and
+// by_accuracy/depth/TOLERANCE/POSE: what exact touch, the distance and the depth take, each
+// afresh, and how wide their intervals are. An interval that does not hold what the finest
+// tolerance found ends the benchmark.
+void add_by_accuracy() {
+  add({"touch", touch}, 0);
+  for (const double tolerance : tolerances()) {
+    add({"distance", distance}, tolerance);
+    add({"depth", depth}, tolerance);
+  }
+}
+
 constexpr double kReach = 2, kDepth = 0.01, kContact = 1e-3;  // mm
 
 Query make_query() {

@@ -1,5 +1,5 @@
 // Presses walls with couplings of many stiffnesses, and finds from which on the wall is active,
-// beside what largest_stiffness() computes. Prints JSON lines, which scripts/stability_border.sh
+// beside what largest_stiffness() computes. Prints JSON lines, which scripts/stability_border.py
 // keeps and draws. Not timed: the same lines on every machine.
 #include "ist/haptics/stability_border.h"
 

@@ -8,19 +8,12 @@ Debian's python3-matplotlib, so run it with the system's python3.
 """
 import json
 import pathlib
-import subprocess
 import sys
 import tempfile
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
-from pictures.depth_buffer import DepthBuffer
-from pictures.ply import positions, read_ply
-from pictures.small_png import save_small_png
+from pictures.drawing import NAMES, Command, DepthBuffer, plt, positions, read_ply, save_small_png
 
 BITE = ["--move", "0,0,-0.6", "--preset", "stl"]
 WIDTH, HEIGHT = 900, 760  # pixels of one jaw's half
@@ -128,14 +121,10 @@ def shaded(colour, normals):
 
 def measured(ist, folder):
     """Returns the vertices as bitten and as opened, the faces, and the report."""
-
-    def run(*arguments):
-        subprocess.run([ist, *map(str, arguments)], check=True, stdout=subprocess.DEVNULL)
-
-    run("demo", "--keep", folder, "--voxel-size", 8)
-    jaws = [folder / "upper_jaw.stl", folder / "lower_jaw.stl"]
-    run("occlusion", *jaws, *BITE, "-o", folder / "bite.ply", "-o", folder / "bite.json")
-    run("occlusion", *jaws, *BITE, "-o", folder / "book.ply", "--open", 8)
+    command = Command(ist, folder)
+    jaws = [command.mesh(name) for name in NAMES]
+    command.lines("occlusion", *jaws, *BITE, "-o", folder / "bite.ply", "-o", folder / "bite.json")
+    command.lines("occlusion", *jaws, *BITE, "-o", folder / "book.ply", "--open", 8)
     bitten, _ = read_ply(folder / "bite.ply")
     book, faces = read_ply(folder / "book.ply")
     return bitten, book, faces, json.loads((folder / "bite.json").read_text())

@@ -14,10 +14,7 @@ import subprocess
 import sys
 import tempfile
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+from pictures.drawing import plt
 
 PAGE = pathlib.Path(__file__).resolve().parent.parent / "docs/haptics.md"
 METRES = {"m": 1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "inch": 0.0254}  # as base/units has them

@@ -20,15 +20,15 @@ PAGE = ROOT / "docs/how-it-works.md"
 
 def pictures(command, ist, folder):
     """Draws each picture; yields its name and its sentence."""
-    from pictures.how import clusters, frontiers, intervals, leaf_bounds, octree_levels, pair_cache, table_balls
+    from pictures.how import bounds, clusters, curves, search
 
-    yield "octree", octree_levels.draw(command, folder / "octree.png")
-    yield "table", table_balls.draw(command, folder / "table.svg")
-    yield "bounds", leaf_bounds.draw(command, folder / "bounds.svg")
-    yield "frontiers", frontiers.draw(command, folder / "frontiers.png")
-    yield "pair_cache", pair_cache.draw(command, folder / "pair_cache.svg", ist)
+    yield "octree", search.draw_octree(command, folder / "octree.png")
+    yield "table", bounds.draw_table(command, folder / "table.svg")
+    yield "bounds", bounds.draw_bounds(command, folder / "bounds.svg")
+    yield "frontiers", search.draw_frontiers(command, folder / "frontiers.png")
+    yield "pair_cache", curves.draw_pair_cache(command, folder / "pair_cache.svg", ist)
     yield "clusters", clusters.draw(command, folder / "clusters.png")
-    yield "intervals", intervals.draw(command, folder / "intervals.svg")
+    yield "intervals", curves.draw_intervals(command, folder / "intervals.svg")
 
 
 def main(ist, library, folder, *options):
@@ -36,7 +36,7 @@ def main(ist, library, folder, *options):
     sys.path.append(str(ROOT / "src/python"))
     import ist as package
 
-    from pictures.how.command import Command
+    from pictures.drawing import Command
 
     missing = 0
     with tempfile.TemporaryDirectory() as name:

@@ -6,30 +6,18 @@
 All that is drawn comes from the command: the built-in lower jaw, its trees, and their exports. Needs Debian's
 python3-matplotlib, so run it with the system's python3.
 """
-import json
 import pathlib
-import subprocess
 import sys
 import tempfile
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
-from pictures.ply import positions, read_ply
-from pictures.small_png import save_small_png
+from pictures.drawing import Command, plt, positions, read_ply, read_stl, save_small_png
 
 PIXELS = 900
 VIEW_FROM = np.array([-0.62, -0.92, 0.62])
 LIGHT = np.array([-0.25, -0.55, 0.85])
 LEVEL = 2
-
-
-def read_stl(file):
-    rows = np.frombuffer(file.read_bytes(), np.dtype([("n", "<f4", 3), ("v", "<f4", (3, 3)), ("a", "<u2")]), offset=84)
-    return rows["v"].astype(float)
 
 
 class Canvas:
@@ -104,25 +92,14 @@ class Canvas:
 
 
 def main(ist, output):
-    ist = pathlib.Path(ist).resolve()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
+        command = Command(pathlib.Path(ist).resolve(), folder)
+        trees = {size: command.tree("lower", voxel_size=size) for size in (4, 1)}
+        voxels = {size: command.answer("export", tree, "--what", "voxels", "--level", 0, "-o", folder / f"{size}.ply")["count"]
+                  for size, tree in trees.items()}
 
-        def run(*arguments):
-            done = subprocess.run([ist, *map(str, arguments)], check=True, stdout=subprocess.PIPE, text=True)
-            return done.stdout
-
-        run("demo", "--keep", folder, "--voxel-size", 8)
-        mesh = folder / "lower_jaw.stl"
-        voxels = {}
-        for size in (4, 1):
-            run("build", mesh, "-o", folder / f"{size}.ist", "--voxel-size", size)
-            lines = run("export", folder / f"{size}.ist", "--what", "voxels", "--level", 0, "-o", folder / f"{size}.ply", "--json")
-            voxels[size] = json.loads(lines.splitlines()[-1])["count"]
-        for policy in ("simple", "table", "tight"):
-            run("export", folder / "1.ist", "--what", "spheres", "--spheres", policy, "--level", LEVEL, "-o", folder / f"{policy}.ply")
-
-        triangles = read_stl(mesh)
+        triangles = read_stl(command.mesh("lower"))
         panels = [("mesh, {:,} triangles".format(len(triangles)), (0.93, 0.88, 0.78), lambda c: c.add_triangles(triangles))]
         for size in (4, 1):
             vertices, faces = read_ply(folder / f"{size}.ply")
@@ -130,8 +107,7 @@ def main(ist, output):
             both = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
             panels.append((f"voxels of {size} mm, {voxels[size]:,}", (0.72, 0.82, 0.93), lambda c, b=both: c.add_triangles(b)))
         for policy in ("simple", "table", "tight"):
-            spheres, _ = read_ply(folder / f"{policy}.ply")
-            spheres = np.column_stack([positions(spheres), spheres["radius"]]).astype(float)
+            spheres = command.spheres(trees[1], policy, LEVEL)
             volume = 4 / 3 * np.pi * (spheres[:, 3] ** 3).sum() / 1000
             panels.append((f"{policy}: {len(spheres):,} spheres of level {LEVEL}, {volume:,.0f} cm³", (0.80, 0.90, 0.74),
                            lambda c, s=spheres: c.add_spheres(s)))

@@ -1,15 +1,25 @@
-"""Writes the circuit's size and clock to HARDWARE.md; see hardware_report.sh.
+#!/usr/bin/python3
+"""Makes perf/HARDWARE.md: what the circuit of src/hardware takes on two FPGAs, by yosys, how often it calls a near miss a hit, and,
+on paper, what rate it would give where a tick asks most. Counts along a closing are kept in
+perf/results/<machine>/hardware_bench.json and made where they are missing. Some 3 minutes once built.
 
-    hardware_report.py MADE PAGE      what synthesise.sh and nextpnr-ice40 made; the page
-"""
+    scripts/hardware_report.py            counts if need be, synthesises
+    scripts/hardware_report.py --fresh    counts again
+
+The clock is known only where nextpnr-ice40 is installed, a package of its own; else the report says so.
+
+    IST_DATA_DIR=FOLDER    where the real jaws are, by default ../shared/data; else the built-in ones"""
 
 import json
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
+from machine import build, machine, refuse, run
 from report.figures import here, stamp
+from report.runner import Runner
 from report.tables import fill, markdown
 
 # The makers state the sizes of the parts: 4-input LUTs, multipliers and memory blocks.
@@ -49,8 +59,32 @@ def lines(made):
                 (ECP5, ecp5, total(ecp5, "LUT4") + 2 * total(ecp5, "CCU2C"), "TRELLIS_FF", "MULT18X18D", "DP16KD", "not measured"))]
     version = subprocess.run(["yosys", "-V"], capture_output=True, text=True, check=True).stdout.split(" (")[0]
     return [*markdown(["part", "4-input LUTs", "flip-flops", "multipliers", "memory blocks", "clock"], rows), "",
-            stamp(*here(), "hardware_report.sh", f"Synthesised by {version}.")]
+            stamp(*here(), "hardware_report.py", f"Synthesised by {version}.")]
+
+
+def place_and_route(made):
+    run("yosys", "-q", "-l", made / "pins.log", "-p", f"""
+        read_verilog {made}/ist_table_rom.v src/hardware/rtl/ist_pair_test.v
+        read_verilog scripts/hardware/ist_pair_test_pins.v
+        synth_ice40 -device u -dsp -top ist_pair_test_pins -json {made}/pins.json""")
+    run("nextpnr-ice40", "--up5k", "--package", "sg48", "--json", made / "pins.json", "--pcf-allow-unconstrained", "--freq", "48",
+        "--timing-allow-fail", "--seed", "1", "--report", made / "placed.json", "--quiet")
+
+
+def main(words):
+    refuse([word for word in words if word != "--fresh"], __doc__)
+    build("bench", "hardware_bench", "ist_cli", "fixed_loop", needs=["--bench", "--hardware"])
+    machine_here, made = machine(), pathlib.Path("build/hardware")
+    if words or not (machine_here.results / "hardware_bench.json").exists():
+        Runner(machine_here.results, machine_here.context, quick=False).measure("hardware_bench", "hardware_report: counting")
+    shutil.rmtree(made, ignore_errors=True)
+    for family in ("ice40", "ecp5"):
+        run("scripts/hardware/synthesise.sh", family, "build/bench/ist", made)
+    if shutil.which("nextpnr-ice40"):
+        place_and_route(made)
+    fill(pathlib.Path("perf/HARDWARE.md"), "size table", "\n".join(lines(made)))
+    run("scripts/perf_report.py", "--fill")
 
 
 if __name__ == "__main__":
-    fill(pathlib.Path(sys.argv[2]), "size table", "\n".join(lines(pathlib.Path(sys.argv[1]))))
+    main(sys.argv[1:])

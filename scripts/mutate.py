@@ -1,4 +1,12 @@
-"""Runs the mutants of mutants/; see mutate.sh."""
+#!/usr/bin/env python3
+"""Tests the tests: breaks the code in one named way after the other (scripts/mutants), in a copy, and runs tests until one fails.
+A mutant that no test kills fails the run. All of them take up to three hours on two cores. Writes perf/MUTANTS.md; a run of some
+renews their rows.
+
+    scripts/mutate.py               every mutant
+    scripts/mutate.py NAME...       those whose names contain one of these words
+    scripts/mutate.py --missing     those that no test has killed at this commit, as after a run that was cut short
+    scripts/mutate.py --list        their names, and what each breaks"""
 
 import json
 import os
@@ -59,34 +67,11 @@ def edited(edits, root=COPY):
     return texts
 
 
-def configure(fast):
+def configure():
     subprocess.run(
         ["cmake", "-S", COPY, "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-         "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG", "-DIST_ASSERTS=ON", "-DIST_CLI=ON", f"-DIST_FEW_TARGETS={'ON' if fast else 'OFF'}"],
+         "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG", "-DIST_ASSERTS=ON", "-DIST_CLI=ON"],
         check=True, stdout=subprocess.DEVNULL)
-
-
-def fast_tests():
-    """The names of the fast tests, and of the programs and scripts that they run. Not all programs need be built."""
-    listed = subprocess.run(["ctest", "--test-dir", BUILD, "--show-only=json-v1", "-L", "^fast$"], check=True, capture_output=True)
-    tests = json.loads(listed.stdout)["tests"]
-    names = {test["name"] for test in tests}
-    return names, {name.split(".")[0] for name in names} | {Path(word).name for test in tests for word in test.get("command", [])}
-
-
-def only(tests, fast):
-    """Those of a mutant's tests that are fast."""
-    names, files = fast
-    kept = []
-    for test in tests:
-        program, _, pattern = test.partition(" ")
-        if program == "ctest":
-            found = any(re.fullmatch(pattern, name) for name in names)
-        else:
-            found = (pattern.split()[0] if program in ("node", "python") else program) in files
-        if found:
-            kept.append(test)
-    return kept
 
 
 def build(programs):
@@ -177,7 +162,7 @@ def write_table(found):
     commits = sorted({row["commit"] for row in known.values()})
     lines = ["# Mutants", "",
              "Each mutant is one deliberate fault in the code. The last column names the first test that fails with it. Made by",
-             "`scripts/mutate.sh` from `scripts/mutants`.", "",
+             "`scripts/mutate.py` from `scripts/mutants`.", "",
              "| mutant | fault | in | killed by |", "|---|---|---|---|"]
     killed = 0
     for mutant in MUTANTS:
@@ -188,19 +173,21 @@ def write_table(found):
     lines += ["", f"{killed} of {len(MUTANTS)} killed."]
     for name in commits:
         ran = sum(row["commit"] == name for row in known.values())
-        lines += ["", stamp(name, date_of(name), "mutate.sh", f"{ran} of them ran there.")]
+        lines += ["", stamp(name, date_of(name), "mutate.py", f"{ran} of them ran there.")]
     (ROOT / "perf/MUTANTS.md").write_text("\n".join(lines) + "\n")
 
 
 def main():
     words = sys.argv[1:]
+    if words[:1] in (["-h"], ["--help"]):
+        print(__doc__)
+        return
     if words == ["--list"]:
         for mutant in MUTANTS:
             edited(mutant.edits, ROOT)  # it still applies
             print(f"{mutant.name:34} {mutant.breaks}")
         return
-    fast = words[:1] == ["--fast"]
-    words = words[fast:]
+    subprocess.run([ROOT / "scripts/setup.sh", "--tests", "--hardware", "--package"], check=True)
     now, known = commit(), results()
     missing = words == ["--missing"]
     chosen = [m for m in MUTANTS if not words or any(word in m.name for word in words)
@@ -213,11 +200,7 @@ def main():
     copy_sources()
     for mutant in chosen:
         edited(mutant.edits)  # all of them still apply, before an hour is spent
-    configure(fast)
-    if fast:
-        os.environ["IST_EFFORT"] = "0.2"
-        tests = fast_tests()
-        chosen = [mutant._replace(tests=only(mutant.tests, tests)) for mutant in chosen]
+    configure()
     programs = programs_of(chosen)
     if programs:
         print(f"building {', '.join(programs)}", flush=True)
@@ -228,10 +211,9 @@ def main():
     found = {}
     for number, mutant in enumerate(chosen, 1):
         start = time.monotonic()
-        killer = killer_of(mutant) if mutant.tests else None
+        killer = killer_of(mutant)
         found[mutant.name] = {"killed_by": killer, "commit": now}
-        if not fast:
-            write_table(found)  # for a run that is cut short
+        write_table(found)  # for a run that is cut short
         print(f"{number:2}/{len(chosen)} {mutant.name:34} {killer or 'SURVIVES'} "
               f"({time.monotonic() - start:.0f} s)", flush=True)
     survivors = [name for name, row in found.items() if row["killed_by"] is None]

@@ -1,15 +1,17 @@
-"""Makes HAPTIC_STABILITY.md and its plot; see stability_border.sh.
+#!/usr/bin/python3
+"""Makes perf/HAPTIC_STABILITY.md and its plot: presses walls with stiffer and stiffer couplings, and shows what energy comes back
+and from which stiffness on, beside the border that the loop computes. Nothing is timed. Some two minutes on one core, once built.
 
-    stability_border.py PRESSES.jsonl FOLDER MACHINE
-"""
+    scripts/stability_border.py"""
 import collections
+import datetime
 import json
-import pathlib
-import shutil
+import subprocess
 import sys
 
 import matplotlib
 
+from machine import build, machine, refuse
 from report.figures import ROOT, stamp
 from report.tables import fill
 
@@ -84,18 +86,21 @@ def table(groups):
 
 
 def main():
-    source, folder, machine, commit, date = sys.argv[1], pathlib.Path(sys.argv[2]), *sys.argv[3:]
-    groups = grouped(json.loads(line) for line in open(source))
-    (folder / "pictures").mkdir(parents=True, exist_ok=True)
-    plot(groups, folder / "pictures/stability_border.svg")
+    refuse(sys.argv[1:], __doc__)
+    build("bench", "stability_border", needs=["--bench"])
+    here = machine()
+    here.results.mkdir(parents=True, exist_ok=True)
+    lines = subprocess.run(["build/bench/bench/stability_border"], check=True, stdout=subprocess.PIPE, text=True).stdout
+    (here.results / "stability_border.jsonl").write_text(lines)
+    groups = grouped(map(json.loads, lines.splitlines()))
+    plot(groups, PAGE.parent / "pictures/stability_border.svg")
     rows, used, broken = table(groups)
-    if folder.resolve() != PAGE.parent:
-        shutil.copy(PAGE, folder)
-    fill(folder / PAGE.name, "presses", "\n".join([
-        f"{machine}. {sum(len(p) for p, _ in groups.values())} presses; of the {used} within {100 * USED:.0f} % of the border, the part that "
-        f"the loop uses, {broken} returned more than their allowance.", "", *rows, "", stamp(commit, date, "stability_border.sh")]))
+    text = (f"{here.model}; {here.compiler}; commit {here.commit}. {sum(len(p) for p, _ in groups.values())} presses; of the {used} within "
+            f"{100 * USED:.0f} % of the border, the part that the loop uses, {broken} returned more than their allowance.")
+    fill(PAGE, "presses", "\n".join([text, "", *rows, "", stamp(here.commit, datetime.date.today().isoformat(), "stability_border.py")]))
     if broken:
         sys.exit(f"stability_border: {broken} presses within the part used returned more than their allowance")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -1,4 +1,9 @@
-"""Counts the instructions of ticks, scene by scene: see tick_instructions.sh, which runs this."""
+#!/usr/bin/python3
+"""Counts the instructions of ticks with callgrind: a scene with all six effects loses one after the other, beside a program without
+a scene that builds the remaining ones by hand. An unnamed effect costs nothing, so both must give the same count and the same bits,
+and each removed effect must save instructions; otherwise this fails.
+
+    scripts/tick_instructions.py [TICKS]    by default 300"""
 
 import json
 import pathlib
@@ -6,6 +11,8 @@ import re
 import subprocess
 import sys
 import tempfile
+
+from machine import build, machine, refuse
 
 BODIES = """unit = "mm"
 [fixed]
@@ -72,9 +79,15 @@ class Counter:
 
 
 def main():
-    program, ticks, result, *context = sys.argv[1:]
+    words = sys.argv[1:]
+    if len(words) != 1 or not words[0].isdigit():
+        refuse(words, __doc__)
+    ticks = words[0] if words else "300"
+    build("bench", "tick_instructions", needs=["--bench", "--package"])
+    here = machine()
+    here.results.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
-        counter = Counter(program, int(ticks), pathlib.Path(folder))
+        counter = Counter("build/bench/bench/tick_instructions", int(ticks), pathlib.Path(folder))
         lines, failed, before = [], False, None
         left, text = list(EFFECTS), ALL
         # The contact, which is first, goes last: others act at contacts.
@@ -95,8 +108,8 @@ def main():
             said = "same" if same else f"NOT THE SAME: {removed} {by_hand}"
             print(f"{', '.join(left) or 'no effects':<58} {removed[0]:>12} {by_hand[0]:>12}  "
                   f"{said if fewer else said + ', AND NOT FEWER'}", flush=True)
-    pathlib.Path(result).write_text(json.dumps(
-        {"context": dict(each.split("=", 1) for each in context), "scenes": lines}, indent=2) + "\n")
+    context = dict(each.split("=", 1) for each in here.context)
+    (here.results / "tick_instructions.json").write_text(json.dumps({"context": context, "scenes": lines}, indent=2) + "\n")
     sys.exit(1 if failed else 0)
 
 

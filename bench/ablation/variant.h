@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "ablation/pointer_tree.h"
+#include "ablation/pointer_query.h"
 #include "ist/query/results.h"
 #include "ist/tree/sphere_tree.h"
 

@@ -1,5 +1,3 @@
-#include "peers/bullet_peer.h"
-
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
 #include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
@@ -11,6 +9,7 @@
 
 #include "ist/base/pose.h"
 #include "peers/exact_parts.h"
+#include "peers/libraries.h"
 
 namespace ist::bench {
 namespace {

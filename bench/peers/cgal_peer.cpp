@@ -1,5 +1,3 @@
-#include "peers/cgal_peer.h"
-
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
@@ -16,6 +14,7 @@
 
 #include "ist/base/pose.h"
 #include "peers/exact_parts.h"
+#include "peers/libraries.h"
 
 namespace ist::bench {
 namespace {

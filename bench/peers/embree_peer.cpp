@@ -1,11 +1,10 @@
-#include "peers/embree_peer.h"
-
 #include <cstdlib>
 #include <iostream>
 #include <thread>
 
 #include "peers/embree_body.h"
 #include "peers/exact_parts.h"
+#include "peers/libraries.h"
 
 namespace ist::bench {
 namespace {

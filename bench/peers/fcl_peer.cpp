@@ -1,5 +1,3 @@
-#include "peers/fcl_peer.h"
-
 #include <fcl/config.h>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
@@ -9,6 +7,8 @@
 
 #include <algorithm>
 #include <limits>
+
+#include "peers/libraries.h"
 
 namespace ist::bench {
 namespace {

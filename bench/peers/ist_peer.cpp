@@ -1,10 +1,9 @@
-#include "peers/ist_peer.h"
-
 #include <algorithm>
 
 #include "ist/measure/signed_distance.h"
 #include "ist/query/query.h"
 #include "ist/tree/sphere_tree.h"
+#include "peers/libraries.h"
 #include "simd/dispatch.h"
 
 namespace ist::bench {

@@ -1,22 +1,5 @@
 #include "peers/libraries.h"
 
-#include "peers/ist_peer.h"
-#ifdef IST_PEER_BULLET
-#include "peers/bullet_peer.h"
-#endif
-#ifdef IST_PEER_CGAL
-#include "peers/cgal_peer.h"
-#endif
-#ifdef IST_PEER_EMBREE
-#include "peers/embree_peer.h"
-#endif
-#ifdef IST_PEER_FCL
-#include "peers/fcl_peer.h"
-#endif
-#ifdef IST_PEER_OPENVDB
-#include "peers/openvdb_peer.h"
-#endif
-
 namespace ist::bench {
 
 std::vector<Library> libraries() {

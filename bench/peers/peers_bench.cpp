@@ -12,24 +12,167 @@
 //                       default 55. What follows takes two thirds of that together
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
+#include <malloc.h>
 
+#include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <iostream>
+#include <numbers>
+#include <string_view>
+#include <vector>
 
 #include "ist/base/parallel.h"
-#include "peers/build_cost.h"
-#include "peers/cold_peers.h"
+#include "ist/mesh/mesh.h"
 #include "peers/contest.h"
-#include "peers/ist_peer.h"
 #include "peers/libraries.h"
+#include "peers/peer.h"
 #include "peers/points.h"
-#include "peers/turned.h"
+#include "peers/poses.h"
 #include "support/bodies.h"
 #include "support/effort.h"
+#include "support/latencies.h"
+#include "support/peak_memory.h"
 
 namespace ist::bench {
 namespace {
+
+// Degrees by which each mesh is turned.
+inline constexpr double kFixedTurned = 46, kMovingTurned = 52;
+
+// The same bodies in other frames: each mesh turned about an oblique axis of its own, by
+// kFixedTurned and kMovingTurned, its vertices rounded to double, and poses that put them where
+// peer_poses() do. A scan has the axes of its scanner; here no axis of a box, a voxel or a grid
+// lies along a jaw, and no mesh's along the other's. Coordinates are rounded, so that counts may
+// differ from those of the meshes as they are given.
+struct TurnedPair {
+  TriangleMesh fixed, moving;
+  std::vector<NamedPose> poses;
+};
+[[nodiscard]] TurnedPair turned_pair();
+
+Eigen::Isometry3d turn(double degrees, const Eigen::Vector3d& axis) {
+  return Eigen::Isometry3d(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis.normalized()));
+}
+
+TriangleMesh turned(TriangleMesh mesh, const Eigen::Isometry3d& by) {
+  for (Eigen::Vector3d& vertex : mesh.vertices) vertex = by * vertex;
+  return mesh;
+}
+
+TurnedPair turned_pair() {
+  const Eigen::Isometry3d fixed = turn(kFixedTurned, {1, 2, 3}),
+                          moving = turn(kMovingTurned, {-3, 1, 2});
+  TurnedPair pair{turned(upper_jaw(), fixed), turned(lower_jaw(), moving), peer_poses()};
+  for (NamedPose& pose : pair.poses) {
+    pose.label += ", turned";
+    pose.truth.reset();  // which is of the vertices before they were rounded
+    pose.pose = fixed * pose.pose * moving.inverse();
+  }
+  return pair;
+}
+
+// The cost to make a library's structures of both meshes, with all its contestants, in the
+// thread limit that is set.
+struct BuildCost {
+  Latencies times;     ///< one a build
+  double held_mb = 0;  ///< in use by malloc after a build and not before, by mallinfo2
+  double grown_mb =
+      0;               ///< by which the process is larger in memory, once free pages are given back
+  double peak_mb = 0;  ///< by which it is larger at its largest during a build
+  int rounds = 0;      ///< as many builds
+};
+
+// In arenas, and mapped for large blocks.
+double allocated_mb() {
+  const struct mallinfo2 info = mallinfo2();
+  return 1e-6 * static_cast<double>(info.uordblks + info.hblkhd);
+}
+
+// What is in memory now: the peak since a moment ago.
+double resident_mb() {
+  reset_peak_memory();
+  return peak_memory_mb();
+}
+
+// Builds `rounds` times, of which the last one is kept.
+BuildCost measure_build(const Library& library, int rounds, Peers& built) {
+  const TriangleMesh &fixed = upper_jaw(), &moving = lower_jaw();  // read before the time begins
+  BuildCost cost;
+  for (; cost.rounds < rounds; ++cost.rounds) {
+    built.clear();
+    const double resident = resident_mb(), allocated = allocated_mb();
+    const auto begin = std::chrono::steady_clock::now();
+    built = library.make(fixed, moving);
+    cost.times.add(
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin)
+            .count());
+    cost.peak_mb = std::max(cost.peak_mb, peak_memory_mb() - resident);
+    cost.held_mb = std::max(cost.held_mb, allocated_mb() - allocated);
+    cost.grown_mb = std::max(cost.grown_mb, resident_mb() - resident);
+  }
+  return cost;
+}
+
+constexpr std::size_t kLine = 64;                // bytes
+constexpr std::size_t kUnknownCache = 32 << 20;  // bytes, where no size is told
+
+// Going through memory takes longer than most answers, so not all are asked.
+constexpr std::array<std::string_view, 5> kAsked = {"ist", "fcl", "fcl_within", "embree",
+                                                    "embree_boxes"};
+
+using Memory = std::vector<unsigned char>;
+
+class ColdPeer final : public Peer {
+ public:
+  ColdPeer(Peer& peer, std::shared_ptr<Memory> memory)
+      : Peer(peer.name(), peer.guarantee()), peer_(peer), memory_(std::move(memory)) {}
+
+  [[nodiscard]] bool answers(Question question) const override { return peer_.answers(question); }
+  void prepare(const Eigen::Isometry3d& pose) override {
+    peer_.prepare(pose);
+    for (std::size_t i = 0; i < memory_->size(); i += kLine) ++(*memory_)[i];
+    benchmark::ClobberMemory();
+  }
+  [[nodiscard]] bool prepared() const override { return peer_.prepared(); }
+  bool meets(const Eigen::Isometry3d& pose) override { return peer_.meets(pose); }
+  std::uint64_t pairs(const Eigen::Isometry3d& pose) override { return peer_.pairs(pose); }
+  std::uint64_t candidates(const Eigen::Isometry3d& pose) override {
+    return peer_.candidates(pose);
+  }
+  DistanceInterval distance(const Eigen::Isometry3d& pose) override { return peer_.distance(pose); }
+
+ private:
+  Peer& peer_;
+  const std::shared_ptr<Memory> memory_;
+};
+
+// Memory that is gone through so that no cache keeps anything of a question: twice the last
+// level's size, bytes; little where it is quick().
+std::size_t swept_bytes() {
+  if (quick()) return 1 << 20;
+  int largest = 0;
+  for (const auto& cache : benchmark::CPUInfo::Get().caches) {
+    largest = std::max(largest, cache.size);
+  }
+  return 2 * (largest > 0 ? static_cast<std::size_t>(largest) : kUnknownCache);
+}
+
+// The quickest of `all`, IST first, under their own names, each with caches as they are when
+// something else has used them: before each question swept_bytes() are gone through, outside of
+// the time that is taken. `all` must outlive them.
+Peers cold_peers(const Peers& all) {
+  const auto memory = std::make_shared<Memory>(swept_bytes());
+  Peers cold;
+  for (const auto& peer : all) {
+    if (std::ranges::find(kAsked, peer->name()) == kAsked.end()) continue;
+    cold.push_back(std::make_unique<ColdPeer>(*peer, memory));
+  }
+  return cold;
+}
 
 // Who is asked what where; all must outlive the benchmarks.
 struct Series {

@@ -3,21 +3,103 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "ist/base/error.h"
+#include "ist/query/query.h"
+#include "ist/tree/sphere_tree.h"
 #include "scaling/asked.h"
-#include "scaling/footprint.h"
 #include "scaling/series.h"
 #include "support/bodies.h"
 #include "support/effort.h"
+#include "support/peak_memory.h"
 
 namespace ist::bench {
 namespace {
+
+// The memory of both jaws in voxels of a size: to be built one after the other, and to be held.
+// Megabytes are 10^6 bytes.
+struct Footprint {
+  double leaves;    ///< of both trees
+  double trees_mb;  ///< that they keep
+  double query_mb;  ///< that a query of one worker reserves
+  double peak_mb;   ///< the most in use while they were built, above what was before
+  double build_s;   ///< wall time
+};
+
+// Bytes that one tree's building may take here (BuildOptions::max_memory).
+inline constexpr std::uint64_t kMaxMemory = std::uint64_t{16} << 30;
+
+using Key = std::pair<SpherePolicy, double>;
+using Trees = std::pair<SphereTree, SphereTree>;
+
+struct Kept {
+  Key key;
+  Trees trees;
+};
+
+std::unique_ptr<Kept>& kept() {
+  static std::unique_ptr<Kept> last;
+  return last;
+}
+
+std::map<Key, Footprint>& measured() {
+  static std::map<Key, Footprint> footprints;
+  return footprints;
+}
+
+SphereTree build_large(const TriangleMesh& mesh, const Key& key) {
+  BuildOptions options;
+  options.spheres = key.first;
+  options.voxel_size = key.second;
+  options.max_memory = kMaxMemory;
+  return build_tree(mesh, options);
+}
+
+double megabytes(std::uint64_t bytes) { return 1e-6 * static_cast<double>(bytes); }
+
+void build_jaws(const Key& key) {
+  const TriangleMesh &upper = upper_jaw(), &lower = lower_jaw();  // read before the clock runs
+  kept().reset();
+  reset_peak_memory();
+  const double before = peak_memory_mb();
+  const auto begin = std::chrono::steady_clock::now();
+  // One after the other, as whoever has no more memory than that would.
+  SphereTree fixed = build_large(upper, key);
+  SphereTree moving = build_large(lower, key);
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+  const double peak = peak_memory_mb() - before;
+  kept() = std::make_unique<Kept>(Kept{key, {std::move(fixed), std::move(moving)}});
+  const auto& [a, b] = kept()->trees;
+  measured()[key] = {static_cast<double>(a.leaf_count()) + b.leaf_count(),
+                     megabytes(a.bytes() + b.bytes()), megabytes(Query(a, b).bytes()), peak,
+                     time.count()};
+}
+
+// Both jaws; the last pair that was asked for is kept, and no other.
+const Trees& jaws(SpherePolicy policy, double voxel_size) {
+  const Key key{policy, voxel_size};
+  if (kept() == nullptr || kept()->key != key) build_jaws(key);
+  return kept()->trees;
+}
+
+void forget_jaws() { kept().reset(); }
+
+// Measured when jaws() first builds them. Throws what build_tree does.
+const Footprint& footprint(SpherePolicy policy, double voxel_size) {
+  const Key key{policy, voxel_size};
+  if (!measured().contains(key)) build_jaws(key);
+  return measured().at(key);
+}
 
 constexpr double kPoses[] = {0, -1.5};
 // Of the limit: build_tree() refuses by an estimate made beforehand, which is larger than the peak.

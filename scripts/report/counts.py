@@ -1,4 +1,4 @@
-"""Tables of programs that scripts/perf_report.sh does not run: the circuit's counts in perf/HARDWARE.md and the builds in docs/performance.md."""
+"""Tables of programs that scripts/perf_report.py does not run: the circuit's counts in perf/HARDWARE.md and the builds in docs/performance.md."""
 
 import pathlib
 import re
@@ -77,7 +77,7 @@ def builds(results, program):
     for size in sorted(made, key=float, reverse=True):
         for policy in POLICIES[1:]:
             if len(made[size][policy]) < 3:
-                raise SystemExit(f"report: {size}, {policy}: too few builds for a median: scripts/bench.sh build_bench -- --benchmark_repetitions=5")
+                raise SystemExit(f"report: {size}, {policy}: too few builds for a median: scripts/bench.py build_bench -- --benchmark_repetitions=5")
         yield Run({"name": size, **{f"{policy}:{key}": statistics.median(run[key] for run in of) for policy, of in made[size].items()
                                     for key in ("real_time", "tree_MB", "peak_MB", "leaves")}})
 

@@ -24,24 +24,24 @@ FOLDERS = ("src", ".", "bench", "tests", "src/hardware/include")
 # on these, on the folder of each file of src and simd that these include, directly or not, and on all else that these include.
 BEGINS = {
     "calls.py": ["bench/python", "src/ist/capi", "src/python/ist"],
-    "hardware_report.sh": ["scripts/hardware", "src/hardware"],
+    "hardware_report.py": ["scripts/hardware", "src/hardware"],
     "ist bench": ["src/cli/commands/bench.cpp", "src/advise/closing_path.cpp", "src/ist/models"],
-    "mutate.sh": ["examples", "scripts/mutants", "scripts/report", "scripts/try.py", "simd", "src", "tests"],
-    "stability_border.sh": ["bench/stability_border.cpp", "tests/haptics/wall_press.cpp"],
-    "stability_report.sh": ["simd", "src/answers", "src/cli", "src/ist", "src/verify",
+    "mutate.py": ["examples", "scripts/mutants", "scripts/report", "scripts/try.py", "simd", "src", "tests"],
+    "stability_border.py": ["bench/stability_border.cpp", "tests/haptics/wall_press.cpp"],
+    "stability_report.py": ["simd", "src/answers", "src/cli", "src/ist", "src/verify",
                             *(f"tests/{room}" for room in ("capi", "cli", "fuzz", "query", "scene", "simd", "stability", "support"))],
     "sweep_bench": ["bench/python/sweep_loop.py", "src/ist/capi", "src/python/ist"],
     "target_instructions.py": ["tests/instructions"],
     "viewer_ratio.mjs": ["src/answers/engine.cpp", "src/viewer/engine/pair.cpp"],
 }
 # Those that no compiler of this project makes.
-UNCOMPILED = {"hardware_report.sh", "mutate.sh"}
+UNCOMPILED = {"hardware_report.py", "mutate.py"}
 # Files of CMake. Their flags decide the compiled code; warnings, names of folders and exceptions from sanitizers do not.
 FLAGGED = ["CMakeLists.txt", "CMakePresets.json", "bench/CMakeLists.txt", "src/ist/CMakeLists.txt", "src/platform.cmake"]
 FLAG = re.compile(r"(?<![\w-])-[OfmDs][\w=+,.-]*|CMAKE_(?:BUILD_TYPE|CXX_\w*FLAGS\w*|CXX_STANDARD|INTERPROCEDURAL_\w+)\W+\w+")
 IDLE = re.compile(r"-f\w+-prefix-map|-fno-sanitize|-fsanitize")
 # Those that count, and time nothing: a count is the same on every machine, whatever else runs there.
-COUNTERS = {"hardware_bench", "hardware_report.sh", "mutate.sh", "stability_border.sh", "stability_report.sh", "target_instructions.py"}
+COUNTERS = {"hardware_bench", "hardware_report.py", "mutate.py", "stability_border.py", "stability_report.py", "target_instructions.py"}
 STAMP = re.compile(r"Measured at commit `([0-9a-f]+\+?)` on (\d{4}-\d\d-\d\d) by `([\w. ]+)`")
 # Of figures that are times: the machine's, beside the stamp.
 STATE = re.compile(r"Load [\d.]+ before, [\d.]+ after; a fixed loop took [\d.]+")

@@ -1,11 +1,7 @@
-"""Raw results of the benchmark programs, as Google Benchmark writes them: one JSON file a program.
-
-`python3 -m report.results FILE NAME=VALUE…` writes into a file what it was made with: Google Benchmark's own option for that takes no
-value with a '=' or a ',' in it."""
+"""Raw results of the benchmark programs, as Google Benchmark writes them: one JSON file a program."""
 
 import json
 import pathlib
-import sys
 
 
 class Run(dict):
@@ -56,14 +52,11 @@ class Results:
 
 
 def stamp(file, context):
-    """`context` as NAME=VALUE; the file is whole, as it was or stamped."""
+    """Writes `context`, as NAME=VALUE, into a file of results, which is whole, as it was or stamped. Google Benchmark's own option for that
+    takes no value with a '=' or a ',' in it."""
     file = pathlib.Path(file)
     data = json.loads(file.read_text())
     data["context"].update(item.split("=", 1) for item in context)
     part = file.with_suffix(".stamped")
     part.write_text(json.dumps(data, indent=1) + "\n")
     part.rename(file)
-
-
-if __name__ == "__main__":
-    stamp(sys.argv[1], sys.argv[2:])

@@ -19,11 +19,11 @@ def fixed_loop():
 
 
 class Runner:
-    def __init__(self, results, context, quick):
+    def __init__(self, results, context, quick, environment=None):
         self.results, self.context = results, context
-        # No variable that is set for another purpose changes the measurements.
-        self.environment = {name: value for name, value in os.environ.items()
-                            if not name.startswith("IST_") or name == "IST_DATA_DIR"} | ({"IST_QUICK": "1"} if quick else {})
+        # No variable that is set for another purpose changes the measurements, if the caller gives no environment.
+        own = {name: value for name, value in os.environ.items() if not name.startswith("IST_") or name == "IST_DATA_DIR"}
+        self.environment = environment or own | ({"IST_QUICK": "1"} if quick else {})
         # The least time of benchmarks that Google Benchmark repeats by itself.
         self.least = ["--benchmark_min_time=0.02"] if quick else []
         results.mkdir(parents=True, exist_ok=True)
@@ -35,10 +35,10 @@ class Runner:
             if program not in missing:
                 print(f"perf_report: {program}: results of this code are there", file=sys.stderr)
         for place, program in enumerate(missing, 1):
-            self._run(program, f"[{place}/{len(missing)}] {program}")
+            self.measure(program, f"[{place}/{len(missing)}] {program}")
 
     def _is_whole(self, program):
-        """Whether the results cover the whole program, not a part that the arguments of bench.sh chose, and are of this code, made by
+        """Whether the results cover the whole program, not a part that the arguments of bench.py chose, and are of this code, made by
         this compiler with these flags. An earlier commit counts if nothing that the program rests on has changed since."""
         file = self.results / f"{program}.json"
         if not file.exists():
@@ -52,11 +52,12 @@ class Runner:
             return not commit.endswith("+")
         return has_history() and is_commit(commit) and not changed_since(commit, program)
 
-    def _run(self, program, title):
+    def measure(self, program, title, more=(), shown=False):
+        """Runs a program with more arguments. Keeps its results with those; shows what it prints, or nothing."""
         loop_before, begin, part = fixed_loop(), time.monotonic(), self.results / f"{program}.part"
         print(title, file=sys.stderr)
-        done = subprocess.run([PROGRAMS / program, *self.least, f"--benchmark_out={part}", "--benchmark_out_format=json"], env=self.environment,
-                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        done = subprocess.run([PROGRAMS / program, *self.least, f"--benchmark_out={part}", "--benchmark_out_format=json", *more],
+                              env=self.environment, stdout=None if shown else subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         if done.returncode != 0:
             part.unlink(missing_ok=True)
             sys.exit(f"perf_report: {program} failed: {''.join(done.stderr.splitlines(keepends=True)[-5:])}")
@@ -65,6 +66,6 @@ class Runner:
             part.unlink()
             sys.exit(f"perf_report: {program}: {wrong[0]['name']}: {wrong[0]['error_message']}")
         # Whole or not there: an interrupted run is run again.
-        stamp(part, [*self.context, f"seconds={time.monotonic() - begin:.1f}", f"loop_before={loop_before}",
+        stamp(part, [*self.context, f"seconds={time.monotonic() - begin:.1f}", f"arguments={' '.join(more)}", f"loop_before={loop_before}",
                      f"loop_after={fixed_loop()}", f"load_after={os.getloadavg()[0]:.2f}"])
         part.rename(self.results / f"{program}.json")

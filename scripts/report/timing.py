@@ -152,7 +152,7 @@ def loop_execution(results):
 
 
 def instructions():
-    """The lines of the table of instructions, which scripts/query_instructions.sh counts and each run of the tests repeats."""
+    """The lines of the table of instructions, which scripts/query_instructions.py counts and each run of the tests repeats."""
     counted = json.loads((pathlib.Path(__file__).parents[2] / "perf/query_instructions.json").read_text())
     rows = sorted(counted["queries"], key=lambda query: query["name"].startswith("ticks/"))
     return [*markdown(["query", "instructions", "sphere tests", "instructions a test"], [

@@ -32,7 +32,8 @@ namespace {
 void require_unit(LengthUnit told, LengthUnit stated, const char* option, const std::string& file) {
   refuse_if(contradict(told, stated), option,
             fmt::format("{} says that its unit is {}: name the unit of the first file by --unit, "
-                        "and of the second by --unit-moving",
+                        "and of the second by --unit-moving; if the file is wrong, convert it to "
+                        "STL, PLY or OBJ, which say no unit",
                         file, to_string(stated)));
 }
 
@@ -92,7 +93,17 @@ double convert_unit(const LoadedBody& fixed, LoadedBody& moving, bool is_moving_
   constexpr LengthUnit kUnknown = LengthUnit::kUnknown;
   refuse_if(is_moving_told && fixed.unit == kUnknown, "--unit-moving",
             fmt::format("the unit of {} is not known: give --unit too", fixed.name()));
-  if (fixed.unit == moving.unit || fixed.unit == kUnknown || moving.unit == kUnknown) return 1;
+  if (fixed.unit == moving.unit) return 1;
+  if (fixed.unit == kUnknown || moving.unit == kUnknown) {
+    const bool is_fixed_known = moving.unit == kUnknown;
+    const LoadedBody &known = is_fixed_known ? fixed : moving,
+                     &other = is_fixed_known ? moving : fixed;
+    note(fmt::format(
+        "{} says no unit, and is taken to be in {}, as {} is: if it is not, give --unit "
+        "and --unit-moving",
+        other.name(), to_string(known.unit), known.name()));
+    return 1;
+  }
   refuse_if(moving.tree.has_value(), moving.name(),
             fmt::format("the tree is in {}, and {} in {}: name the tree's mesh, and its unit by "
                         "--unit-moving, and it is converted",

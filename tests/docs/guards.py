@@ -67,7 +67,7 @@ def flaws_of_guarantees(text, tests, mutants, killed):
             if name not in mutants:
                 wrong.append(f"'{guarantee}' names {name}, and there is no such mutant")
             elif name not in killed:
-                wrong.append(f"'{guarantee}' names {name}, and no test has killed it: scripts/mutate.sh {name}")
+                wrong.append(f"'{guarantee}' names {name}, and no test has killed it: scripts/mutate.py {name}")
             elif killed[name] != PROOF and names and not any(begins(killed[name], test) for test in names):
                 wrong.append(f"'{guarantee}' names {name}, and {killed[name]} killed it, none of its tests")
     return wrong, named

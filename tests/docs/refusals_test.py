@@ -155,7 +155,7 @@ class Guards(unittest.TestCase):
         self.assertEqual(flaws("| It holds | `Real` | `proven` |"), ([], 1))
         self.assertEqual(flaws("| It holds | `Real` | `elsewhere` |")[0],
                          ["'It holds' names elsewhere, and Other.Thing killed it, none of its tests"])
-        self.assertEqual(flaws("| It holds | `Real` | `lives` |")[0], ["'It holds' names lives, and no test has killed it: scripts/mutate.sh lives"])
+        self.assertEqual(flaws("| It holds | `Real` | `lives` |")[0], ["'It holds' names lives, and no test has killed it: scripts/mutate.py lives"])
 
     def test_lines_without_a_title(self):
         wrong, _ = self.flaws("- **A.** `Real`\n- Untitled. `NoSuchTest`\n")

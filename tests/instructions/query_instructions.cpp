@@ -1,5 +1,5 @@
 // Asks ten fixed queries of the built-in jaws, one worker on AVX2, and makes ticks of two scenes,
-// for callgrind to count: see scripts/query_instructions.sh, which runs this. Prints compiler,
+// for callgrind to count: see scripts/query_instructions.py, which runs this. Prints compiler,
 // flags and how many ticks, then a line a query: its name, what it found and how many pairs of
 // spheres it tested. Exits with 77 where the processor has no AVX2.
 #include <fmt/format.h>

@@ -78,7 +78,7 @@ class Sources(unittest.TestCase):
                              ("loop_bench", ["src/ist/scene", "src/ist/haptics"]),
                              ("deadline_bench", ["tests/support/conformal.cpp", "src/ist/query/traversal", "simd"]),
                              ("hardware_bench", ["src/hardware/include/ist/hardware", "tests/hardware/pair_walk.h"]),
-                             ("peers_bench", ["src/ist/measure", "src/ist/query/triangles"]), ("stability_border.sh", ["src/ist/haptics"])):
+                             ("peers_bench", ["src/ist/measure", "src/ist/query/triangles"]), ("stability_border.py", ["src/ist/haptics"])):
             self.assertEqual(set(rooms) - set(figures.sources_of(maker)), set(), maker)
         self.assertNotIn("src/ist/haptics", figures.sources_of("ablation_bench"))
         self.assertNotIn("src/ist/mesh/format", figures.sources_of("peers_bench"))
@@ -226,7 +226,7 @@ class History(Project):
 
 
 class Missing(Project):
-    """scripts/perf_report.sh runs a benchmark again that has no results, or results of other code."""
+    """scripts/perf_report.py runs a benchmark again that has no results, or results of other code."""
 
     MADE = {"compiler": "g++ 12", "flags": "-O3"}
 
@@ -234,7 +234,7 @@ class Missing(Project):
         """The programs that run if `results` is the context of what was measured before, or None."""
         ran, folder = [], self.root / "build"
         runner = Runner(folder, [f"{name}={value}" for name, value in {**self.MADE, "commit": now, **context}.items()], quick=False)
-        runner._run = lambda program, _: ran.append(program)
+        runner.measure = lambda program, _: ran.append(program)
         file = folder / "made.json"
         file.unlink(missing_ok=True)
         if results is not None:

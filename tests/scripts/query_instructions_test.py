@@ -44,7 +44,7 @@ class Check(unittest.TestCase):
         with mock.patch.object(query_instructions, "count", **made), \
                 mock.patch.dict(os.environ, IST_REQUIRE_ALL=require_all), \
                 contextlib.redirect_stdout(self.said), contextlib.redirect_stderr(self.said):
-            return query_instructions.main("program", self.baseline, *rest)
+            return query_instructions.main("program", self.baseline, "--update" in rest)
 
     def test_same_counts_pass(self):
         self.assertEqual(self.check(COUNTS), 0)

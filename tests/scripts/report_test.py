@@ -7,7 +7,7 @@ import sys
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts"))
-from report import __main__ as report  # noqa: E402  after its folder is known
+import perf_report as report  # noqa: E402  after its folder is known
 from report import draw, peers  # noqa: E402
 from report.figures import ROOT  # noqa: E402
 from report.results import Results, Run  # noqa: E402

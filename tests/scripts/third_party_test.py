@@ -10,7 +10,6 @@ import unittest
 RELEASE = pathlib.Path(__file__).parents[2] / "scripts/release"
 sys.path.insert(0, str(RELEASE))
 import third_party  # noqa: E402  after its folder is known
-import used  # noqa: E402
 
 ENTRIES = tomllib.loads((RELEASE / "third_party.toml").read_text())["library"]
 SMALL = [{"name": "One", "licence": "MIT", "owners": ["one-dev", "one"]},
@@ -20,20 +19,20 @@ SMALL = [{"name": "One", "licence": "MIT", "owners": ["one-dev", "one"]},
 class Owners(unittest.TestCase):
     def test_a_file_of_a_package_is_that_package_s(self):
         header, library = "/usr/include/fmt/format.h", os.path.realpath("/usr/lib/x86_64-linux-gnu/libz.so.1")
-        self.assertEqual(used.owners({header, library}), {header: "libfmt-dev", library: "zlib1g"})
+        self.assertEqual(third_party.owners({header, library}), {header: "libfmt-dev", library: "zlib1g"})
 
     def test_a_file_of_nobody_is_its_own(self):
-        self.assertEqual(used.owners({"/usr/include/nobody.h"}), {"/usr/include/nobody.h": "/usr/include/nobody.h"})
-        self.assertEqual(used.owners(set()), {})
+        self.assertEqual(third_party.owners({"/usr/include/nobody.h"}), {"/usr/include/nobody.h": "/usr/include/nobody.h"})
+        self.assertEqual(third_party.owners(set()), {})
 
     def test_the_project_s_own_files_do_not_count(self):
-        uses = used.Uses("/tmp/project")
-        uses.add("wheel", used.COMPILED, {"/tmp/project/a.h", "/usr/include/fmt/format.h"})
-        self.assertEqual({owner: dict(places) for owner, places in uses.items()}, {"libfmt-dev": {"wheel": {used.COMPILED}}})
+        uses = third_party.Uses("/tmp/project")
+        uses.add("wheel", third_party.COMPILED, {"/tmp/project/a.h", "/usr/include/fmt/format.h"})
+        self.assertEqual({owner: dict(places) for owner, places in uses.items()}, {"libfmt-dev": {"wheel": {third_party.COMPILED}}})
 
 
 class Entries(unittest.TestCase):
-    USES = {"one": {"wheel": {used.LOADED}}, "one-dev": {"wheel": {used.COMPILED}, "page": {used.LINKED}}}
+    USES = {"one": {"wheel": {third_party.LOADED}}, "one-dev": {"wheel": {third_party.COMPILED}, "page": {third_party.LINKED}}}
 
     def test_an_owner_without_an_entry_is_an_error(self):
         with self.assertRaisesRegex(SystemExit, "without an entry in third_party.toml: /opt/other, three"):
@@ -43,7 +42,7 @@ class Entries(unittest.TestCase):
         found = third_party.by_entry(self.USES, SMALL)
         self.assertEqual(list(found), ["One"])
         _, own, places = found["One"]
-        self.assertEqual((own, places), (["one", "one-dev"], {"wheel": {used.LOADED, used.COMPILED}, "page": {used.LINKED}}))
+        self.assertEqual((own, places), (["one", "one-dev"], {"wheel": {third_party.LOADED, third_party.COMPILED}, "page": {third_party.LINKED}}))
 
     def test_a_pattern_fits_files_below_its_folder_alone(self):
         self.assertEqual(third_party.entry_of("/opt/two/include/a.h", SMALL)["name"], "Two")
@@ -82,7 +81,7 @@ class Site(unittest.TestCase):
                                 (site / "index.html", "c")):
                 place.parent.mkdir(parents=True, exist_ok=True)
                 place.write_text(text)
-            found, unknown = used.copies(site, theme)
+            found, unknown = third_party.copies(site, theme)
             self.assertEqual((found, unknown), ({str((theme / "base.js").resolve())}, {str(site / "strange.css")}))
 
 
@@ -92,7 +91,7 @@ class Notices(unittest.TestCase):
             text = pathlib.Path(folder, "copyright")
             text.write_text("Copyright Ada. See /usr/share/common-licenses/Apache-2.0.\n")
             entry = {"name": "Headers of fmt", "licence": "MIT", "owners": ["libfmt-dev"], "texts": [str(text)]}
-            found = third_party.by_entry({"libfmt-dev": {"wheel": {used.COMPILED, used.LINKED}}}, [entry])
+            found = third_party.by_entry({"libfmt-dev": {"wheel": {third_party.COMPILED, third_party.LINKED}}}, [entry])
             said = third_party.notices(found, None, "1.2.3")
         self.assertRegex(said, r"(?m)^Headers of fmt \d+\.\d[\d.]*\n    licence: MIT\n    used: wheel \(compiled in, linked in\)$")
         self.assertIn("IST 1.2.3 ", said)

@@ -3,10 +3,9 @@ import {test} from 'node:test';
 
 import {identity, multiply, transformed, translation} from '../../src/viewer/page/pose.js';
 import {placeAt, relative, spansOf} from '../../src/viewer/page/recording/placed_bodies.js';
-import {indexAt} from '../../src/viewer/page/recording/playback.js';
+import {indexAt, toolPath} from '../../src/viewer/page/recording/playback.js';
 import {parseRecording, poseOfRow, recordingSteps} from '../../src/viewer/page/recording/recording.js';
 import {placedByScene, sceneBodies} from '../../src/viewer/page/recording/scene_bodies.js';
-import {toolPath} from '../../src/viewer/page/recording/tool_path.js';
 
 const header = {recording: 2, ist: '1.2.3', commit: 'c', dt: 0.001, unit: 0.001, bodies: [{name: 'fixed'}, {name: 'held'}], scene: ''};
 const row = (z) => [0, 0, z, 1, 0, 0, 0, 1, 0, 0, 0, 1];

@@ -5,12 +5,9 @@ import colorsys
 
 import numpy as np
 
-from pictures.depth_buffer import DepthBuffer
-from pictures.how.leaf_bounds import SKIN, read_stl
-from pictures.how.style import INK, POLICY, plt
+from pictures.drawing import DepthBuffer, plt, read_stl, save_small_png
 from pictures.how.triangle_order import WIDTH, frame_of, order_of
-from pictures.how.view import LIGHT, View
-from pictures.small_png import save_small_png
+from pictures.how.view import INK, LIGHT, POLICY, SKIN, View
 
 PANEL = 1080, 800  # samples, two to a pixel
 NEAR = 110  # samples a mm

@@ -1,10 +1,34 @@
-"""An eye far away: cubes, balls, discs and faces, drawn to the right and upwards in a matplotlib place."""
+"""How the pictures of docs/how-it-works.md look: on a white ground, so that a dark page shows them as a light one does; and an eye far
+away, which sees cubes, balls, discs and faces."""
+import pathlib
+
 import numpy as np
 from matplotlib.patches import Circle, Polygon
 
+from pictures.drawing import plt
+
+# As in the plots of perf/REPORT.md.
+POLICY = {"simple": "#888888", "table": "#d95f02", "tight": "#7570b3", "slab": "#1b9e77"}
+FIXED, MOVING, INK, PALE = "#1f618d", "#b03a2e", "#333333", "#c9c9c9"
+
+plt.rcParams.update({
+    "svg.hashsalt": "ist", "svg.fonttype": "path", "font.size": 10, "axes.titlesize": 10, "text.color": INK,
+    "axes.edgecolor": INK, "axes.labelcolor": INK, "xtick.color": INK, "ytick.color": INK, "axes.spines.top": False,
+    "axes.spines.right": False, "legend.frameon": False,
+})
+SKIN = (0.93, 0.86, 0.70)
 BACK = np.array([0.55, -0.75, 0.42])  # towards the eye
 LIGHT = np.array([0.15, -0.55, 0.80])
 SHADES = (0.80, 0.90, 1.0)  # of a cube's faces across x, y and z
+
+
+def save(figure, file):
+    """Writes an SVG without a date, and without the spaces at the ends of lines."""
+    file = pathlib.Path(file)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(file, metadata={"Date": None}, facecolor="white")
+    file.write_text("\n".join(line.rstrip() for line in file.read_text().splitlines()) + "\n")
+    plt.close(figure)
 
 
 class View:

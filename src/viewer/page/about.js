@@ -1,8 +1,25 @@
 /** The window that says what the page is, and whose work is in it. */
 
 import {button} from './ui/controls.js';
-import {openDialog} from './ui/dialog.js';
-import {element} from './ui/element.js';
+import {element, newId} from './ui/element.js';
+
+/**
+ * Opens a window over the page. Escape closes it.
+ * @param {string} title
+ * @param {...Node} content
+ */
+function openDialog(title, ...content) {
+  const id = newId('dialog');
+  const dialog = element(
+    'dialog',
+    {'aria-labelledby': id, onclose: () => dialog.remove()},
+    element('h2', {id}, title),
+    ...content,
+    element('form', {method: 'dialog'}, element('button', {class: 'primary'}, 'Close')),
+  );
+  document.body.append(dialog);
+  dialog.showModal();
+}
 
 /** @param {import('./engine/engine_client.js').EngineClient} engine */
 export function openAbout(engine) {

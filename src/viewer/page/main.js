@@ -25,12 +25,32 @@ import {makeReadout} from './readout.js';
 import {makeReadRecording} from './recording/read_recording.js';
 import {makeStore} from './state/store.js';
 import {exposeTestSurface} from './test_surface.js';
-import {followTheme} from './theme.js';
 import {takeDrops} from './ui/file_drop.js';
 import {makeMessages} from './ui/messages.js';
 import {makeProgress} from './ui/progress.js';
 import {makeTabs} from './ui/tabs.js';
 import {makeAnyStage} from './view/any_stage.js';
+
+/**
+ * Dark or light: as the system says, until the button says otherwise.
+ * @param {import('./context.js').Store} store
+ * @param {import('./view/stage.js').Stage} stage
+ * @param {HTMLElement} button
+ */
+function followTheme(store, stage, button) {
+  const system = matchMedia('(prefers-color-scheme: dark)');
+  const shown = () => store.get().theme ?? (system.matches ? 'dark' : 'light');
+  const apply = () => {
+    const theme = shown();
+    document.documentElement.dataset.theme = theme;
+    button.textContent = theme === 'dark' ? 'Light' : 'Dark';
+    stage.setBackground(getComputedStyle(document.documentElement).getPropertyValue('--view').trim());
+  };
+  button.addEventListener('click', () => store.set({theme: shown() === 'dark' ? 'light' : 'dark'}));
+  system.addEventListener('change', apply);
+  store.subscribe(['theme'], apply);
+  apply();
+}
 
 // Just apart, so that a little closing shows what there is to see.
 const startShift = [0, 0, -1.5];

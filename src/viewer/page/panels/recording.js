@@ -3,8 +3,7 @@
 import {faultText} from '../engine/engine_client.js';
 import {placeAt, relative} from '../recording/placed_bodies.js';
 import {openRecordingFile} from '../recording/open_recording.js';
-import {indexAt, makePlayback} from '../recording/playback.js';
-import {toolPath} from '../recording/tool_path.js';
+import {indexAt, makePlayback, toolPath} from '../recording/playback.js';
 import {identity} from '../pose.js';
 import {button, select, slider} from '../ui/controls.js';
 import {element} from '../ui/element.js';

@@ -1,11 +1,25 @@
-"""Fills the tables of pages from results, and draws the plots: see scripts/perf_report.sh, which runs this.
+#!/usr/bin/python3
+"""Makes the tables of perf/REPORT.md and of the closing in docs/performance.md, and the plots, from raw results in
+perf/results/<machine>/. The text of the pages is written by hand. Without the real jaws the pages go to build/report, as with
+--quick. The script runs the benchmarks that have no results of this code, so it goes on after an interruption. Results of an
+earlier commit count if no source of theirs has changed. Results of changes that no commit holds do not count. It takes some half
+an hour on two cores that have nothing else to do, and 5 minutes to build.
 
-A page holds its text. Between `<!-- NAME table -->` and `<!-- end of NAME table -->` stand the lines that the results of NAME give."""
+    scripts/perf_report.py            runs what has no results of this code
+    scripts/perf_report.py --fresh    runs all again
+    scripts/perf_report.py --fill     makes the tables from the results as they are, and runs nothing
+    scripts/perf_report.py --quick    shows that all of it runs, in 3 minutes once built: few rounds,
+                                      large voxels; everything goes to build/report instead
 
-import pathlib
+    IST_DATA_DIR=FOLDER    where the real jaws are, by default ../shared/data; else the built-in ones
+
+A page holds its text. Between `<!-- NAME table -->` and `<!-- end of NAME table -->` stand the lines that the results of NAME
+give."""
+
 import re
 import sys
 
+from machine import build, machine, refuse
 from report import ablation, accuracy, counts, peers, scaling, seed, timing
 from report.draw import draw
 from report.figures import COUNTERS, ROOT, machine_state, stamp
@@ -49,13 +63,13 @@ def description(results, program):
                       f"commit {c['commit']}", c["date"][:10]])
 
 
-def main(arguments):
-    options = {argument for argument in arguments if argument.startswith("--")}
-    raw, *context = [argument for argument in arguments if argument not in options]
-    quick = "--quick" in options
-    folder = ROOT / "build/report/results" / pathlib.Path(raw).name if quick else pathlib.Path(raw)
+def main(options):
+    refuse([word for word in options if word not in ("--quick", "--fresh", "--fill")], __doc__)
+    quick, here = "--quick" in options, machine()
+    folder = ROOT / "build/report/results" / here.results.name if quick else ROOT / here.results
     if "--fill" not in options:
-        Runner(folder, context, quick).run(PROGRAMS, again=quick or "--fresh" in options)
+        build("bench", needs=["--peers"])
+        Runner(folder, machine().context, quick).run(PROGRAMS, again=quick or "--fresh" in options)
     results = Results(folder)
     # The text of the pages is about the human pair.
     others = results.made("ablation_bench") and results.runs("ablation_bench", "ablation")[0]["label"] != "human"
