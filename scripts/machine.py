@@ -54,6 +54,17 @@ def build(preset, *targets, needs):
     run("cmake", "--build", "--preset", preset, *(["--target", *targets] if targets else []))
 
 
+def pyplot():
+    """Returns matplotlib's pyplot, which writes SVG with the same bytes each time. build() has installed it."""
+    import matplotlib
+
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt  # after the backend is chosen
+
+    plt.rcParams.update({"svg.hashsalt": "ist", "svg.fonttype": "none"})
+    return plt
+
+
 def refuse(words, doc):
     """Prints a script's help and ends, if the words ask for it, or are more than the script takes."""
     if words:

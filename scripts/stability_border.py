@@ -9,15 +9,9 @@ import json
 import subprocess
 import sys
 
-import matplotlib
-
-from machine import build, machine, refuse
+from machine import build, machine, pyplot, refuse
 from report.figures import ROOT, stamp
 from report.tables import fill
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-from matplotlib.colors import SymLogNorm
 
 PAGE = ROOT / "perf/HAPTIC_STABILITY.md"
 USED = 0.8  # of the computed border: what clamp_coupling() leaves
@@ -55,14 +49,14 @@ def panel(axes, key, presses, borders, norm):
 def plot(groups, file):
     rates = sorted({key[2] for key in groups})
     rows = list(dict.fromkeys(key[:2] for key in groups))
+    plt = pyplot()
     figure, axes = plt.subplots(len(rows), len(rates), figsize=(10, 2.6 * len(rows)), squeeze=False,
                                 layout="constrained")
-    norm = SymLogNorm(linthresh=10, vmin=-1e4, vmax=1e4)
+    norm = plt.matplotlib.colors.SymLogNorm(linthresh=10, vmin=-1e4, vmax=1e4)
     for key, (presses, borders) in groups.items():
         drawn = panel(axes[rows.index(key[:2])][rates.index(key[2])], key, presses, borders, norm)
     axes[0][0].legend(fontsize=6, loc="lower right")
     figure.colorbar(drawn, ax=axes, shrink=0.5, label="energy returned by a press, µJ: above 0 the wall is active")
-    plt.rcParams.update({"svg.hashsalt": "ist", "svg.fonttype": "none"})
     figure.savefig(file, metadata={"Date": None})
 
 

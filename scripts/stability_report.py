@@ -14,14 +14,9 @@ import shutil
 import subprocess
 import sys
 
-import matplotlib
-
-from machine import build, machine, refuse
+from machine import build, machine, pyplot, refuse
 from report.figures import ROOT, stamp
 from report.tables import fill
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 
 PAGE = ROOT / "perf/STABILITY.md"
 FLOOR, CEILING = 1e-6, 10  # ends of the plot: values beyond them are drawn there, as triangles
@@ -61,6 +56,7 @@ def table(cases):
 
 def plot(cases, file):
     shown = [case for case in cases if ratio(case) is not None]
+    plt = pyplot()
     figure, axes = plt.subplots(figsize=(9, 1.2 + 0.2 * len(shown)))
     colours = dict(zip(GROUPS, plt.get_cmap("tab10").colors))
     for row, case in enumerate(shown):
@@ -78,7 +74,6 @@ def plot(cases, file):
     samples = sum(case["samples"] for case in shown)
     axes.set_title(f"How much of each guarantee is used: {len(shown)} cases, n = {samples:,} samples", fontsize=9)
     figure.tight_layout()
-    plt.rcParams.update({"svg.hashsalt": "ist", "svg.fonttype": "none"})
     figure.savefig(file, metadata={"Date": None})
 
 
