@@ -199,7 +199,8 @@ MUTANTS = [
      "      block_ = block(blocks_);\n      ++blocks_;\n")], ["sweep_test Philox.*"]),
     ("corners-of-the-square-kept", "a turn is drawn from the squares about the discs", [(SWEEP + "pose_source.cpp", "square < 1 && square > 0",
 
-         "square < 2 && square > 0"), (SWEEP + "pose_source.cpp", "std::sqrt((1 - a.square) / b.square)", "std::sqrt(std::abs(1 - a.square) / b.square)")],
+     "square < 2 && square > 0"),
+     (SWEEP + "pose_source.cpp", "std::sqrt((1 - a.square) / b.square)", "std::sqrt(std::abs(1 - a.square) / b.square)")],
      ["sweep_test PoseBox.AnyTurnIsUniform"]),
     ("grid-end-by-steps", "the last value of a grid's axis is computed as the others are",
      [(SWEEP + "pose_source.cpp", "  if (step == axis.count - 1) return axis.to;\n", "")], ["sweep_test PoseGrid.EndsAreExact"]),

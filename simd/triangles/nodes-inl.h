@@ -16,8 +16,8 @@
 #include "simd/triangles/cluster_step.h"
 #include "simd/triangles/sixteen-inl.h"
 
-// Vector twins of the scalar forms in simd/triangles/triangle_lanes.h. No product is fused to a sum, so
-// that the same nodes meet on every instruction set.
+// Vector twins of the scalar forms in simd/triangles/triangle_lanes.h. No product is fused to a
+// sum, so that the same nodes meet on every instruction set.
 HWY_BEFORE_NAMESPACE();
 namespace ist::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;

@@ -9,7 +9,6 @@
 import pathlib
 import re
 import sys
-import textwrap
 
 HERE = pathlib.Path(__file__).resolve().parent
 HEADERS = ["ist_status.h", "ist_c.h", "ist_measure.h", "ist_servo.h", "ist_sweep.h", "ist_world.h"]
