@@ -35,7 +35,7 @@ constexpr std::string_view kHarmless[] = {
     "input type",     "vmad",          "vmap",         "clip",
     "layer",          "mapping",       "access type",  "empty geometry",
     "empty line",     "null geometry", "mesh with no", "newer format",
-    "no hierarchy",   "same contents", "envl"};
+    "no hierarchy",   "same contents", "envl",         "span chunk"};
 
 // Keeps the first warning or error that may tell of a lost part of the surface: each without a
 // harmless word. assimp would go on.
