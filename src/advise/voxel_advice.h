@@ -82,7 +82,7 @@ struct VoxelAdvice {
   std::optional<double> too_fine;          ///< the last size that could not be built
 };
 
-/// Tries `coarsest` and three sizes below, each a quarter of the one before, until the goal begins
+/// Tries `coarsest` and four sizes below, each a quarter of the one before, until the goal begins
 /// or ceases to hold. Then tries up to three sizes between both neighbours, by interpolation of the
 /// logarithms. The recommended size was measured to meet the goal. It is within 15 % of the best
 /// size if the value is a power law of the size. All sizes have two significant digits.

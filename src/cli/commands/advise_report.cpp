@@ -86,7 +86,7 @@ std::string why_none(const VoxelAdvice& advice, const AdviceGoal& goal) {
       advice.too_fine ? fmt::format("{:g} needs more memory than --max-memory allows, or is too "
                                     "fine for a lattice",
                                     *advice.too_fine)
-                      : std::string("finer voxels are not possible"));
+                      : std::string("finer voxels are not tried"));
 }
 
 }  // namespace ist::cli
