@@ -15,7 +15,7 @@
 namespace ist::test {
 namespace {
 
-constexpr double kCoarsest = 4.4, kFinest = kCoarsest / 64;
+constexpr double kCoarsest = 4.4, kFinest = kCoarsest / 256;
 
 using Curve = std::function<double(double)>;
 
@@ -79,7 +79,7 @@ TEST(VoxelAdvice, IsNearTheBestSizeOfAPowerLaw) {
       const double size = size_of(measures.advise(kError, limit), {kError, limit});
       EXPECT_GE(1.15 * size, std::min(best, kCoarsest));
       EXPECT_GE(size, last);
-      EXPECT_LE(measures.asked(), 7u);
+      EXPECT_LE(measures.asked(), 8u);
       last = size;
     }
     last = kCoarsest;
@@ -90,7 +90,7 @@ TEST(VoxelAdvice, IsNearTheBestSizeOfAPowerLaw) {
       const double size = size_of(measures.advise(kTime, limit), {kTime, limit});
       EXPECT_LE(size, 1.15 * std::max(best, kFinest));
       EXPECT_LE(size, last);
-      EXPECT_LE(measures.asked(), 7u);
+      EXPECT_LE(measures.asked(), 8u);
       last = size;
     }
   }
