@@ -9,12 +9,27 @@
 namespace ist::test {
 namespace {
 
-// The patient's frame that files name: bodies of two frames never meet in silence.
-
 using nlohmann::json;
 
+class TreePair : public CliTest {
+ protected:
+  // Returns the error of a sweep of two trees that cannot be compared.
+  [[nodiscard]] std::string refused_sweep(const std::string& fixed,
+                                          const std::string& moving) const {
+    const std::string job = write(
+        "job.toml",
+        fmt::format("answers = [\"intersects\"]\n[fixed]\ntree = \"{}\"\n[moving]\ntree = \"{}\"\n"
+                    "[poses.box]\nseed = 1\ncount = 10\nfrom = [-1, -1, -1]\nto = [1, 1, 1]\n"
+                    "turns = \"any\"\n",
+                    fixed, moving));
+    const CommandResult result = ist({"sweep", job, "-o", path("out")});
+    EXPECT_NE(result.exit_code, 0);
+    return result.err;
+  }
+};
+
 // A plate, and a ball 0.2 deep in it, as two programs store them: one in RAS, one in LPS.
-class Frames : public CliTest {
+class Frames : public TreePair {
  protected:
   [[nodiscard]] std::string in(PatientFrame frame, const std::string& name, TriangleMesh of) const {
     of.frame = PatientFrame::kRas;
@@ -62,13 +77,8 @@ TEST_F(Frames, TwoInASweepAreRefused) {
   const std::string ras = path("ras.ist"), lps = path("lps.ist");
   ist_well({"build", ras_, "-o", ras, "--voxel-size", "0.5"});
   ist_well({"build", lps_, "-o", lps, "--voxel-size", "0.5"});
-  const std::string job = write(
-      "job.toml",
-      "answers = [\"intersects\"]\n[fixed]\ntree = \"ras.ist\"\n[moving]\ntree = \"lps.ist\"\n"
-      "[poses.box]\nseed = 1\ncount = 10\nfrom = [-1, -1, -1]\nto = [1, 1, 1]\nturns = \"any\"\n");
-  const CommandResult result = ist({"sweep", job, "-o", path("out")});
-  EXPECT_NE(result.exit_code, 0);
-  EXPECT_TRUE(says(result.err, lps + ": the tree is in the frame lps, and " + ras + " is in ras"));
+  EXPECT_TRUE(says(refused_sweep("ras.ist", "lps.ist"),
+                   lps + ": the tree is in the frame lps, and " + ras + " is in ras"));
 }
 
 // Labels lie where the mesh lies: a turned and converted mesh keeps them.
@@ -177,7 +187,7 @@ TEST_F(Frames, OfFilesNameTheSides) {
 // The unit that a mesh file states is taken. It is converted only if --unit-moving asks for it.
 
 // Two boxes that are 0.4 mm deep in each other, in millimetres and in inches.
-class StatedUnits : public CliTest {
+class StatedUnits : public TreePair {
  protected:
   [[nodiscard]] std::string in(const std::string& name, const std::string& unit, double factor,
                                TriangleMesh of) const {
@@ -251,13 +261,8 @@ TEST_F(StatedUnits, OfTreesAreTakenBySweepsAndScenes) {
   const std::string mm = path("mm.ist"), inch = path("inch.ist");
   ist_well({"build", mm_, "-o", mm, "--voxel-size", "2"});
   ist_well({"build", inch_moving_, "-o", inch, "--voxel-size", "0.1"});
-  const std::string job = write(
-      "job.toml",
-      "answers = [\"intersects\"]\n[fixed]\ntree = \"mm.ist\"\n[moving]\ntree = \"inch.ist\"\n"
-      "[poses.box]\nseed = 1\ncount = 10\nfrom = [-1, -1, -1]\nto = [1, 1, 1]\nturns = \"any\"\n");
-  const CommandResult swept = ist({"sweep", job, "-o", path("out")});
-  EXPECT_NE(swept.exit_code, 0);
-  EXPECT_TRUE(says(swept.err, inch + ": the tree is in inch, and " + mm + " is in mm"));
+  EXPECT_TRUE(says(refused_sweep("mm.ist", "inch.ist"),
+                   inch + ": the tree is in inch, and " + mm + " is in mm"));
   const std::string scene = write(
       "scene.toml",
       "unit = \"mm\"\n[fixed]\nfile = \"mm.ist\"\n[held]\nfile = \"inch.ist\"\n[device]\n"

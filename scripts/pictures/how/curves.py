@@ -38,7 +38,7 @@ def draw_pair_cache(command, file, ist):
     figure.subplots_adjust(left=0.075, right=0.985, top=0.97, bottom=0.11, hspace=0.12)
     ticks = np.arange(len(fresh))
     tests.step(ticks, fresh, color=POLICY["simple"], linewidth=1.5, label="a search in each tick")
-    tests.step(ticks, kept, color=POLICY["slab"], linewidth=1.2, label="a front carried from tick to tick")
+    tests.step(ticks, kept, color=POLICY["slab"], linewidth=1.2, label="a pair cache kept from tick to tick")
     tests.step(ticks, np.where(pairs > 0, pairs, np.nan), color=INK, linewidth=1, linestyle=":", label="leaf pairs, the answer of both")
     tests.set(yscale="log", ylabel="tests of a tick", ylim=(0.8, 3 * fresh.max()))
     tests.legend(loc="lower right")
