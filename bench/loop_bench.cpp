@@ -15,11 +15,11 @@
 #include <thread>
 #include <vector>
 
-#include "ist/haptics/bodies/pair_queries.h"
-#include "ist/haptics/real_time.h"
-#include "ist/haptics/tick_clock.h"
-#include "ist/haptics/tool.h"
 #include "ist/scene.h"
+#include "loop/haptics/bodies/pair_queries.h"
+#include "loop/haptics/real_time.h"
+#include "loop/haptics/tick_clock.h"
+#include "loop/haptics/tool.h"
 #include "support/bodies.h"
 #include "support/effort.h"
 #include "support/latencies.h"

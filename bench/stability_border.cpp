@@ -1,7 +1,7 @@
 // Presses walls with couplings of many stiffnesses, and finds from which on the wall is active,
 // beside what largest_stiffness() computes. Prints JSON lines, which scripts/stability_border.py
 // keeps and draws. Not timed: the same lines on every machine.
-#include "ist/haptics/stability_border.h"
+#include "loop/haptics/stability_border.h"
 
 #include <fmt/format.h>
 

@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "ist/capi/ist_c.h"
-#include "ist/sweep/sweep.h"
 #include "support/bodies.h"
 #include "support/effort.h"
 #include "support/stopwatch.h"
+#include "sweep/sweep.h"
 
 namespace ist::bench {
 namespace {

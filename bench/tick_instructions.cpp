@@ -18,23 +18,23 @@
 #include <utility>
 
 #include "ist/base/float_environment.h"
-#include "ist/haptics/devices/hand_device.h"
-#include "ist/haptics/effects/contact_effect.h"
-#include "ist/haptics/effects/damping_effect.h"
-#include "ist/haptics/effects/friction_effect.h"
-#include "ist/haptics/effects/gravity_effect.h"
-#include "ist/haptics/effects/proximity_effect.h"
-#include "ist/haptics/effects/snap_effect.h"
 #include "ist/haptics/recording.h"
 #include "ist/haptics/simulation.h"
-#include "ist/haptics/simulation_parts.h"
-#include "ist/haptics/tool.h"
 #include "ist/mesh/mesh.h"
 #include "ist/models/models.h"
 #include "ist/scene.h"
 #include "ist/tree/proximity_body.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/voxel/voxelizer.h"
+#include "loop/haptics/devices/hand_device.h"
+#include "loop/haptics/effects/contact_effect.h"
+#include "loop/haptics/effects/damping_effect.h"
+#include "loop/haptics/effects/friction_effect.h"
+#include "loop/haptics/effects/gravity_effect.h"
+#include "loop/haptics/effects/proximity_effect.h"
+#include "loop/haptics/effects/snap_effect.h"
+#include "loop/haptics/simulation_parts.h"
+#include "loop/haptics/tool.h"
 
 namespace ist::bench {
 namespace {

@@ -1,5 +1,5 @@
 /* Do two jaws touch, and how far apart are they? hello.cpp and hello.py print the same lines. */
-#include <ist/capi/ist_c.h>
+#include <ist/capi/ist_models.h>
 #include <stdio.h>
 
 /* Prints the error of a call that failed. Returns 1 if the call succeeded. */

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Draws the pictures of docs/how-it-works.md, and says the sentence below each of them, whose numbers are measured with it.
 
-    scripts/draw_how.py PATH/TO/ist PATH/TO/libist.so FOLDER             draws, and prints the sentences
-    scripts/draw_how.py PATH/TO/ist PATH/TO/libist.so FOLDER --check     draws, and fails where the page has another sentence
+    scripts/draw_how.py PATH/TO/ist PATH/TO/libist_loop.so FOLDER             draws, and prints the sentences
+    scripts/draw_how.py PATH/TO/ist PATH/TO/libist_loop.so FOLDER --check     draws, and fails where the page has another sentence
 
 All that is drawn comes from the command, but for two things: the Python package asks the library for the pair cache that a query
 carries, and the nodes of triangle clusters, which nothing public has, follow from the library's rule. The script computes the

@@ -25,7 +25,7 @@ COPY = ROOT / "build/mutants/source"
 BUILD = ROOT / "build/mutants/build"
 RESULTS = ROOT / "perf/results/mutants.json"
 # Targets of ctest tests.
-PACKAGED = {"ist_shared", "ist_hardware_shared", "ist_cli", "ist_pages", "package_layout", "scene_keys"}
+PACKAGED = {"ist_shared", "ist_loop_shared", "ist_hardware_shared", "ist_cli", "ist_pages", "package_layout", "scene_keys"}
 SECONDS = 600  # for one program: a mutant that hangs is found out too
 
 

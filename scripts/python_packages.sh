@@ -19,7 +19,7 @@ fi
 mkdir -p "$build"
 build=$(cd "$build" && pwd)
 cmake --preset python -B "$build" "$@" >"$build/configure.log" || { cat "$build/configure.log"; exit 1; }
-cmake --build "$build" --target ist_shared >"$build/build.log" || { cat "$build/build.log"; exit 1; }
+cmake --build "$build" --target ist_loop_shared >"$build/build.log" || { cat "$build/build.log"; exit 1; }
 
 # In a copy, for setuptools writes beside the modules. The wheel is made from the sdist.
 rm -rf "$build/source" "$build"/ist-*.whl "$build"/ist-*.tar.gz
@@ -28,7 +28,7 @@ cp -r src/python/{pyproject.toml,setup.py,MANIFEST.in,README.md,ist} "$build/sou
 sed -i "/^dynamic = /r $build/contact.toml" "$build/source/pyproject.toml"
 SOURCE_DATE_EPOCH=$(cmake -P src/package/commit.cmake)
 export SOURCE_DATE_EPOCH
-IST_PYTHON_LIBRARY=$build/src/package/libist.so.0 \
+IST_PYTHON_LIBRARY=$build/src/package/libist_loop.so.0 \
   /usr/bin/python3 -m build --no-isolation --outdir "$build" "$build/source" >"$build/packages.log" 2>&1 ||
   { cat "$build/packages.log"; exit 1; }
 ls -1 "$build"/ist-*.whl "$build"/ist-*.tar.gz

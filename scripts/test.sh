@@ -134,7 +134,7 @@ long_part() {  # a long test that needs more than one command
     samples) for program in build/test/tests/*_test; do [[ $program == */ist_c11_test ]] || IST_EFFORT=20 "$program" --gtest_brief=1; done ;;
     as-users-build) run "release -DIST_TESTS=ON" "base_test mesh_test tree_test query_test search_test" -R '^(base|mesh|tree|query|search)_test' ;;
     benches) scripts/setup.sh --peers; configure bench -DIST_WERROR=ON; build bench all ;;
-    portable) run "python -DIST_GOLDEN=ON" "ist_shared golden_test" ;;
+    portable) run "python -DIST_GOLDEN=ON" "ist_loop_shared golden_test" ;;
     sanitize-all) run sanitize-all tests_fast -L '^fast$' ;;
     threads)
       configure thread

@@ -7,7 +7,7 @@
 
 #include "accuracy/approaches.h"
 #include "accuracy/sections.h"
-#include "ist/haptics/bodies/tool_contact_query.h"
+#include "loop/haptics/bodies/tool_contact_query.h"
 #include "support/latencies.h"
 
 namespace ist::bench {

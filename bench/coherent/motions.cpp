@@ -5,7 +5,7 @@
 #include <random>
 #include <string>
 
-#include "ist/haptics/bodies/tool_contact_query.h"
+#include "loop/haptics/bodies/tool_contact_query.h"
 #include "support/bodies.h"
 #include "support/effort.h"
 

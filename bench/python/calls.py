@@ -2,7 +2,7 @@
 """Times calls from Python beside the same calls from C, in turns, call by call, and prints medians: what a call costs more, and how
 much of C's poses a second rows reach. Given a page, writes the table there.
 
-    IST_LIBRARY=build/release/src/package/libist.so PYTHONPATH=src/python bench/python/calls.py [docs/performance.md]
+    IST_LIBRARY=build/release/src/package/libist_loop.so PYTHONPATH=src/python bench/python/calls.py [docs/performance.md]
 
 From the project's root. Needs gcc, numpy, a library that was built (scripts/setup.sh --python; cmake --preset release; cmake --build
 --preset release), and the fixed loop (cmake --preset bench; cmake --build --preset bench --target fixed_loop).

@@ -4,8 +4,8 @@ BOUNDS_INL = "simd/bounds-inl.h"
 VOXELIZER = "src/ist/voxel/voxelizer.cpp"
 MEASURE = "src/ist/measure/"
 QUERY_STATE = "src/ist/query/query_state.cpp"
-CAPI = "src/ist/capi/"
-HAPTICS = "src/ist/haptics/"
+CAPI = "src/c/"
+HAPTICS = "src/loop/haptics/"
 SIMULATION = HAPTICS + "simulation.cpp"
 FRICTION = HAPTICS + "effects/friction_effect.cpp"
 KERNELS = "search_test *Border*:*Advance*"
@@ -105,7 +105,7 @@ MUTANTS = [
     ("script-goes-back-late", "a held tool goes back, and a body with a script does not", [(SIMULATION, "  set_time(last_complete.time);\n",
      "  set_time(time);\n")], ["haptics_test DrivenBody.Waits*"]),
     ("scene-beyond-the-border", "a scene's coupling is clamped as for ticks a tenth as long",
-     [("src/ist/scene/scene_builder.cpp", "clamp_coupling(scene_.coupling, built_.device->mechanics(), period_)",
+     [("src/loop/scene/scene_builder.cpp", "clamp_coupling(scene_.coupling, built_.device->mechanics(), period_)",
      "clamp_coupling(scene_.coupling, built_.device->mechanics(), 0.1 * period_)")], ["haptics_test AmongFiveBodies.*"]),
     ("change-allocates", "each change sorts the memory of the changes anew", [(SIMULATION, "  return tried.back();\n",
      "  tried.shrink_to_fit();\n  return tried.back();\n")], ["quiet_test QuietTick.OfFiveBodies*"]),
@@ -158,7 +158,7 @@ MUTANTS = [
      "  const std::string word(text);\n  char* stop = nullptr;\n  value = static_cast<Number>(std::strtod(word.c_str(), &stop));\n  return "
      "{text.data() + (stop - word.c_str()), std::errc{}};\n}\n#else")], ["scene_test Locale.*"]),
     ("scene-parsed-as-the-caller-rounds", "a scene is parsed in the caller's arithmetic",
-     [("src/ist/scene/scene_file.cpp", "  const ScopedFloatEnvironment environment;  // of the parser too\n", "")],
+     [("src/loop/scene/scene_file.cpp", "  const ScopedFloatEnvironment environment;  // of the parser too\n", "")],
      ["stability_test *FloatEnvironmentOfAScene*"]),
     ("placed-as-the-caller-rounds", "placements are moved in the caller's arithmetic", [(HAPTICS + "placement.cpp",
      "Placement Placement::integrated_fast(const Vector6& motion) const noexcept {\n  const ScopedFloatEnvironment environment;\n",

@@ -6,7 +6,7 @@ WORLD = "src/ist/query/world/"
 FORMAT = "src/ist/mesh/format/"
 IMPORT = "src/import/"
 MESSAGE = "src/ist/mesh/import/import_message.cpp"
-SWEEP = "src/ist/sweep/"
+SWEEP = "src/sweep/"
 
 MUTANTS = [
     ("voxel-pad-dropped", "a cube is not inflated before a triangle is tested against it", [(VOXELIZER, "return lattice.pad() * (1 - 1.0 / 1024);",

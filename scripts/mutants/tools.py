@@ -1,7 +1,7 @@
 """Faults in tools, the circuit, the C interface, the page, figures and the package."""
 
 ADVICE = "src/advise/"
-CAPI = "src/ist/capi/"
+CAPI = "src/c/"
 HARDWARE = "src/hardware/"
 BITES = "src/answers/occlusion/"
 OCCLUSION = "src/cli/occlusion/"
@@ -136,7 +136,7 @@ MUTANTS = [
      ["ctest Package.Uninstall"]),
     # The pages.
     ("key-without-a-default", "the reader of scenes does not say what a key is where it is absent",
-     [("src/ist/scene/table_reader.cpp", "if (!otherwise.empty()) noted", "if (false) noted")], ["ctest Docs.SceneReference"]),
+     [("src/loop/scene/table_reader.cpp", "if (!otherwise.empty()) noted", "if (false) noted")], ["ctest Docs.SceneReference"]),
     ("left-without-a-reason", "a page's code may be left without a reason", [("tests/docs/pages.py", "output varies), \\S.*", "output varies).*")],
      ["ctest Docs.Refusals"]),
     ("scripts-left-unnamed", "HACKING may leave out a script", [("tests/docs/names.py", "sorted(needed - named)", "sorted(needed - needed)")],

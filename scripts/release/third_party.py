@@ -97,7 +97,7 @@ class Uses(collections.defaultdict):
 
 def in_packages(uses, build):
     uses.add("Debian packages", COMPILED, headers(build))
-    for target in ("ist_cli", "ist_shared", "ist_hardware_shared"):
+    for target in ("ist_cli", "ist_shared", "ist_loop_shared", "ist_hardware_shared"):
         uses.add("Debian packages", LINKED, archives(build, target, build / "again"))
     for binary in (build / "ist", *(build / "src/package").glob("*.so")):
         uses.add("Debian packages", LOADED, loaded(binary))
@@ -105,8 +105,8 @@ def in_packages(uses, build):
 
 def in_wheel(uses, build):
     uses.add("wheel", COMPILED, headers(build))
-    uses.add("wheel", LINKED, archives(build, "ist_shared", build / "again"))
-    uses.add("wheel", LOADED, loaded(build / "src/package/libist.so.0"))
+    uses.add("wheel", LINKED, archives(build, "ist_loop_shared", build / "again"))
+    uses.add("wheel", LOADED, loaded(build / "src/package/libist_loop.so.0"))
 
 
 def in_page(uses, build, bundled):

@@ -23,14 +23,14 @@ FOLDERS = ("src", ".", "bench", "tests", "src/hardware/include")
 # What figures begin with, by the script or the benchmark that makes them, beside a benchmark's own files: sources and folders. They rest
 # on these, on the folder of each file of src and simd that these include, directly or not, and on all else that these include.
 BEGINS = {
-    "calls.py": ["bench/python", "src/ist/capi", "src/python/ist"],
+    "calls.py": ["bench/python", "src/c", "src/python/ist"],
     "hardware_report.py": ["scripts/hardware", "src/hardware"],
-    "ist bench": ["src/cli/commands/bench.cpp", "src/advise/closing_path.cpp", "src/ist/models"],
+    "ist bench": ["src/cli/commands/bench.cpp", "src/advise/closing_path.cpp", "src/models"],
     "mutate.py": ["examples", "scripts/mutants", "scripts/report", "scripts/try.py", "simd", "src", "tests"],
     "stability_border.py": ["bench/stability_border.cpp", "tests/haptics/wall_press.cpp"],
     "stability_report.py": ["simd", "src/answers", "src/cli", "src/ist", "src/verify",
                             *(f"tests/{room}" for room in ("capi", "cli", "fuzz", "query", "scene", "simd", "stability", "support"))],
-    "sweep_bench": ["bench/python/sweep_loop.py", "src/ist/capi", "src/python/ist"],
+    "sweep_bench": ["bench/python/sweep_loop.py", "src/c", "src/python/ist"],
     "target_instructions.py": ["tests/instructions"],
     "viewer_ratio.mjs": ["src/answers/engine.cpp", "src/viewer/engine/pair.cpp"],
 }

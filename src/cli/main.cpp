@@ -21,7 +21,7 @@
 #include "cli/terminal.h"
 #include "ist/base/error.h"
 #include "ist/base/files.h"
-#include "ist/scene/spelling.h"
+#include "loop/scene/spelling.h"
 
 namespace ist::cli {
 

@@ -2,7 +2,7 @@
 
   (unset)    CMake builds the portable one from the sources, by its preset `python`
   a file     that one
-  installed  none: the package asks the loader for libist.so.0, as Debian's package libist0 has it"""
+  installed  none: the package asks the loader for libist_loop.so.0, as Debian's package libist0 has it"""
 
 import gzip
 import os
@@ -23,7 +23,7 @@ except ImportError:  # setuptools before 70.1
     from wheel.bdist_wheel import bdist_wheel
 
 HERE = pathlib.Path(__file__).resolve().parent
-SONAME = "libist.so.0"
+SONAME = "libist_loop.so.0"
 LIBRARY = os.environ.get("IST_PYTHON_LIBRARY", "")
 # What the library is built from, and what of it only other things are built from.
 SOURCES = ["CMakeLists.txt", "CMakePresets.json", "LICENSE", "simd", "src"]
@@ -54,7 +54,7 @@ def version():
 
 def write_mirror():
     """Writes the module with the structs, numbers and functions of the C headers."""
-    subprocess.run([sys.executable, project() / "src/ist/capi/c_mirrors.py", "python", HERE / "ist/_c.py"], check=True)
+    subprocess.run([sys.executable, project() / "src/c/c_mirrors.py", "python", HERE / "ist/_c.py"], check=True)
 
 
 def copy_licences(folder):
@@ -84,7 +84,7 @@ class BuildModules(build_py):
     def built(self):
         folder = pathlib.Path(self.get_finalized_command("build").build_temp, "library").resolve()
         subprocess.run(["cmake", "--preset", "python", "-B", folder], cwd=project(), check=True)
-        subprocess.run(["cmake", "--build", folder, "--target", "ist_shared"], check=True)
+        subprocess.run(["cmake", "--build", folder, "--target", "ist_loop_shared"], check=True)
         return folder / "src/package" / SONAME
 
 

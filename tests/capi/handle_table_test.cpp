@@ -1,4 +1,4 @@
-#include "ist/capi/handles/handle_table.h"
+#include "c/handle_table.h"
 
 #include <gtest/gtest.h>
 

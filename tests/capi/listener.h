@@ -8,8 +8,8 @@
 #include <string>
 #include <thread>
 
+#include "c/follower.h"
 #include "c_bodies.h"
-#include "ist/capi/follower.h"
 
 namespace ist::test {
 

@@ -7,6 +7,7 @@
 
 #include "capi/c_bodies.h"
 #include "ist/capi/ist_measure.h"
+#include "ist/capi/ist_models.h"
 #include "ist/capi/ist_sweep.h"
 #include "ist/capi/ist_world.h"
 #include "support/shapes.h"

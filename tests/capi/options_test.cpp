@@ -5,8 +5,8 @@
 #include <cstring>
 #include <vector>
 
+#include "c/sized_struct.h"
 #include "capi/c_bodies.h"
-#include "ist/capi/sized_struct.h"
 #include "ist/mesh/mesh.h"
 #include "ist/query/query.h"
 #include "ist/tree/saved_spheres.h"

@@ -1,4 +1,4 @@
-#include "ist/capi/status.h"
+#include "c/status.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <string>
 #include <system_error>
 
+#include "c/guard.h"
 #include "capi/c_bodies.h"
 #include "ist/base/error.h"
-#include "ist/capi/guard.h"
 
 namespace ist::test {
 namespace {

@@ -6,9 +6,9 @@
 #include <thread>
 #include <vector>
 
+#include "c/follower.h"
 #include "capi/c_bodies.h"
 #include "ist/base/cancellation.h"
-#include "ist/capi/follower.h"
 #include "support/shapes.h"
 
 namespace ist::test {

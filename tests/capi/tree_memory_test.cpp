@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "c_bodies.h"
+#include "ist/capi/ist_models.h"
 #include "ist/mesh/mesh.h"
 #include "ist/models/models.h"
 #include "listener.h"

@@ -39,7 +39,7 @@ def with_declarations(folder, prefix, libraries, compilers):
     for compiler in compilers:
         binary = folder / f"turns.{pathlib.Path(compiler).name}"
         run(compiler, "-std=c++20", "-O1", *WARNINGS, f"-I{folder}", f"-I{prefix}/include", f"-I{STUBS}", HERE / "chai3d/turns.cpp",
-            "-o", binary, f"-L{libraries}", "-list")
+            "-o", binary, f"-L{libraries}", "-list_loop", "-list")
         printed.add(run(binary, SCENE, env=dict(os.environ, LD_LIBRARY_PATH=str(libraries))))
     if len(printed) != 1:
         sys.exit("chai3d_tool: the compilers' programs print different numbers")

@@ -1,6 +1,6 @@
 """Draws the pictures of the pages anew, and compares them with those that are there.
 
-    pictures.py NAME PATH/TO/ist PATH/TO/libist.so FOLDER
+    pictures.py NAME PATH/TO/ist PATH/TO/libist_loop.so FOLDER
 
 NAME says which script: how, tree, bite or closing. A picture of pixels may differ in 1 % of them, and one of lines by a
 hundredth of a unit of its numbers, since other versions of what draws them round otherwise. Where matplotlib is missing, that

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ist/scene/scene_parts.h"
-#include "ist/scene/toml_document.h"
+#include "loop/scene/scene_parts.h"
+#include "loop/scene/toml_document.h"
 
 namespace {
 

@@ -99,7 +99,7 @@ class Reader:
         libraries = next(prefix.rglob("pkgconfig/ist.pc")).parent.parent
         self.environment = dict(os.environ, PATH=f"{prefix}/bin:{os.environ['PATH']}", LD_LIBRARY_PATH=str(libraries),
                                 PKG_CONFIG_PATH=str(libraries / "pkgconfig"), PYTHONPATH=str(PACKAGE), IST_PAGE=str(VIEW),
-                                IST_LIBRARY=str(libraries / "libist.so"), MPLBACKEND="Agg", PYTHONDONTWRITEBYTECODE="1")
+                                IST_LIBRARY=str(libraries / "libist_loop.so"), MPLBACKEND="Agg", PYTHONDONTWRITEBYTECODE="1")
         self.session = None  # of the page's Python, from its first block on
         self.printed = None  # of the last block, until it is compared
         self.fragments, self.outputs = [], []  # of the page's one program
@@ -133,7 +133,7 @@ class Reader:
             self.run(["ist", "sweep", file, "-o", parts, "--share", "999999998/999999999"], block.line)
 
     def flags(self, what):
-        return self.run(["pkg-config", what, "ist"], 0).split()
+        return self.run(["pkg-config", what, "ist_loop"], 0).split()
 
     def program(self, text, line, ending, compilers, standard):
         """What a program prints, the same of each compiler."""

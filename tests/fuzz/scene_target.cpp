@@ -5,8 +5,8 @@
 
 #include "fuzz/fuzz_target.h"
 #include "ist/base/error.h"
-#include "ist/haptics/devices/plan.h"
 #include "ist/scene.h"
+#include "loop/haptics/devices/plan.h"
 #include "support/temp_dir.h"
 
 namespace ist::test {

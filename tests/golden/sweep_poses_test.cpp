@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "golden/hasher.h"
-#include "ist/sweep/pose_source.h"
+#include "sweep/pose_source.h"
 
 namespace ist::test {
 namespace {

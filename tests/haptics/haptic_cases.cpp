@@ -1,9 +1,9 @@
 #include "haptics/haptic_cases.h"
 
-#include "ist/haptics/effects/contact_effect.h"
-#include "ist/haptics/simulation_parts.h"
-#include "ist/haptics/tool.h"
 #include "ist/tree/sphere_tree.h"
+#include "loop/haptics/effects/contact_effect.h"
+#include "loop/haptics/simulation_parts.h"
+#include "loop/haptics/tool.h"
 #include "support/shapes.h"
 
 namespace ist::test {

@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "ist/haptics/simulation_parts.h"
 #include "ist/tree/sphere_tree.h"
+#include "loop/haptics/simulation_parts.h"
 
 namespace ist::test {
 

@@ -2,11 +2,11 @@
 
 #include <filesystem>
 
-#include "ist/haptics/effects/damping_effect.h"
-#include "ist/haptics/effects/friction_effect.h"
-#include "ist/haptics/simulation_parts.h"
-#include "ist/haptics/tool.h"
 #include "ist/mesh/mesh.h"
+#include "loop/haptics/effects/damping_effect.h"
+#include "loop/haptics/effects/friction_effect.h"
+#include "loop/haptics/simulation_parts.h"
+#include "loop/haptics/tool.h"
 #include "support/data_dir.h"
 #include "support/random.h"
 

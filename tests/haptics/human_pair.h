@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "ist/haptics/bodies/tool_contact_query.h"
-#include "ist/haptics/devices/hand_device.h"
 #include "ist/haptics/simulation.h"
 #include "ist/query/query.h"
 #include "ist/tree/sphere_tree.h"
+#include "loop/haptics/bodies/tool_contact_query.h"
+#include "loop/haptics/devices/hand_device.h"
 #include "support/stability.h"
 
 namespace ist::test {

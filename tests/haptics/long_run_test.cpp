@@ -5,7 +5,7 @@
 #include <string>
 
 #include "haptics/human_pair.h"
-#include "ist/haptics/stability_border.h"
+#include "loop/haptics/stability_border.h"
 #include "support/data_dir.h"
 #include "support/effort.h"
 #include "support/stability.h"

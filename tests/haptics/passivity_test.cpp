@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "haptics/wall_press.h"
-#include "ist/haptics/stability_border.h"
+#include "loop/haptics/stability_border.h"
 #include "support/effort.h"
 
 namespace ist::test {

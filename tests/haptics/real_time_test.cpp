@@ -1,4 +1,4 @@
-#include "ist/haptics/real_time.h"
+#include "loop/haptics/real_time.h"
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>

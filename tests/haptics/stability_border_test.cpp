@@ -1,4 +1,4 @@
-#include "ist/haptics/stability_border.h"
+#include "loop/haptics/stability_border.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <complex>
 #include <numbers>
 
-#include "ist/haptics/tool.h"
 #include "ist/models/models.h"
 #include "ist/tree/sphere_tree.h"
+#include "loop/haptics/tool.h"
 #include "query/query_cases.h"
 #include "support/effort.h"
 #include "support/random.h"

@@ -1,4 +1,4 @@
-#include "ist/haptics/tick_clock.h"
+#include "loop/haptics/tick_clock.h"
 
 #include <gtest/gtest.h>
 #include <pthread.h>

@@ -1,11 +1,11 @@
-#include "ist/haptics/tool.h"
+#include "loop/haptics/tool.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "ist/haptics/coupling.h"
-#include "ist/haptics/effects/contact_effect.h"
+#include "loop/haptics/coupling.h"
+#include "loop/haptics/effects/contact_effect.h"
 
 namespace ist::test {
 namespace {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ist/haptics/devices/hand_device.h"
-#include "ist/haptics/effects/contact_effect.h"
-#include "ist/haptics/simulation_parts.h"
-#include "ist/haptics/tool.h"
 #include "ist/tree/sphere_tree.h"
+#include "loop/haptics/devices/hand_device.h"
+#include "loop/haptics/effects/contact_effect.h"
+#include "loop/haptics/simulation_parts.h"
+#include "loop/haptics/tool.h"
 #include "support/shapes.h"
 
 namespace ist::test {

@@ -1,4 +1,4 @@
-#include "ist/haptics/wrench_limiter.h"
+#include "loop/haptics/wrench_limiter.h"
 
 #include <gtest/gtest.h>
 

@@ -26,9 +26,10 @@ OTHER_COMPILER = "clang++-14"
 def installed_headers():
     """Below include/: those of the library, and those of the circuit's model."""
     listed = (SOURCE / "src/package/public_headers.txt").read_text().splitlines()
-    model = SOURCE / "src/hardware/include"
-    return ([line for line in listed if line.startswith("ist/")],
-            sorted(str(file.relative_to(model)) for file in model.rglob("*.h")))
+    ours = [line for line in listed if line.startswith("ist/")]
+    below = {library: SOURCE / "src" / library / "include" for library in ("c", "loop", "models", "hardware")}
+    others = {library: sorted(str(file.relative_to(folder)) for file in folder.rglob("*.h")) for library, folder in below.items()}
+    return ours + others["c"] + others["loop"] + others["models"], others["hardware"]
 
 
 def layout(binary):
@@ -64,7 +65,7 @@ class Packages(Installed, Pages):
 
     def compile_consumer(self, folder, headers, environment, compiler=None):
         """By what pkg-config says alone; nothing but Eigen is included besides the headers in one place."""
-        flags = [run("pkg-config", *words, "ist", env=environment).split()
+        flags = [run("pkg-config", *words, "ist_loop", env=environment).split()
                  for words in (["--cflags"], ["--libs"])]
         program, names = folder / "consumer", folder / "consumer.d"
         run(compiler or self.compiler, "-std=c++20", *WARNINGS, *flags[0], "-MD", "-MF", names, HERE / "consumer/consumer.cpp",
@@ -89,7 +90,8 @@ class Packages(Installed, Pages):
         config = ["ist-config-version.cmake", "ist-config.cmake"]
         expected = ["bin/ist", *(f"{self.libraries}/{name}" for name in (
                         *(f"cmake/ist/{name}" for name in config), "libist.so", "libist.so.0", "libist.so.V",
-                        "libist_hardware.so", "libist_hardware.so.0", "libist_hardware.so.V", "pkgconfig/ist.pc")),
+                        "libist_hardware.so", "libist_hardware.so.0", "libist_hardware.so.V",
+                        "libist_loop.so", "libist_loop.so.0", "libist_loop.so.V", "pkgconfig/ist.pc", "pkgconfig/ist_loop.pc")),
                     "libexec/ist/ist-import",
                     "share/bash-completion/completions/ist",
                     *(f"share/doc/{name}/copyright" for name in ("ist-import", "ist", "libist-dev", "libist0"))]
@@ -111,6 +113,9 @@ class Packages(Installed, Pages):
         run("cmake", "--build", folder)
         printed = self.check_consumer(folder / "consumer")
         run(folder / "hardware")
+        run(folder / "query")
+        needed = re.findall(r"NEEDED.*\[(libist.*?)\.so", run("readelf", "-dW", folder / "query"))
+        require(needed == ["libist"], f"a program of queries needs {needed}")
         other = self.fresh("find_package_other_compiler")
         need(OTHER_COMPILER)
         run("cmake", "-G", "Ninja", "-S", HERE / "consumer", "-B", other, f"-DCMAKE_PREFIX_PATH={self.prefix}",
@@ -134,7 +139,7 @@ class Packages(Installed, Pages):
         need(OTHER_COMPILER)
         program = self.compile_consumer(folder, self.prefix, environment, OTHER_COMPILER)
         self.check_consumer(program, ["env", f"LD_LIBRARY_PATH={self.prefix}/{self.libraries}"])
-        flags = run("pkg-config", "--cflags", "--libs", "ist", env=environment).split()
+        flags = run("pkg-config", "--cflags", "--libs", "ist_loop", env=environment).split()
         run("cc", "-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", HERE / "consumer/consumer.c", *flags,
             "-o", folder / "consumer_c")
         run("env", f"LD_LIBRARY_PATH={self.prefix}/{self.libraries}", folder / "consumer_c")
@@ -206,7 +211,7 @@ class Packages(Installed, Pages):
         """The headers are closed under includes, and what they define can be linked."""
         folder = self.fresh("headers")
         ours, model = installed_headers()
-        require(len(ours) <= 34, f"{len(ours)} headers are installed: 34 are the most")
+        require(len(ours) <= 35, f"{len(ours)} headers are installed: 35 are the most")
         text = {header: (self.prefix / "include" / header).read_text() for header in ours + model}
         for header in text:
             for other in re.findall(r'#include "([^"]+)"', text[header]):
@@ -230,7 +235,7 @@ class Packages(Installed, Pages):
         require(len(roots) > 60, f"only {len(roots)} inline functions")
         (folder / "roots").write_text("".join(f"-Wl,-u,{name}\n" for name in roots))
         run(self.compiler, folder / "all.o", f"@{folder}/roots", "-Wl,--gc-sections", "-o", folder / "all",
-            f"-L{self.prefix}/{self.libraries}", "-list_hardware", "-list")
+            f"-L{self.prefix}/{self.libraries}", "-list_hardware", "-list_loop", "-list")
         print(f"{len(roots)} inline functions link")
 
     def Refused(self):

@@ -33,7 +33,7 @@ def pose_of(z):
 
 def main(expected):
     expected = pathlib.Path(expected).resolve()
-    loaded = {line.split()[-1] for line in open("/proc/self/maps", encoding="utf-8") if "libist.so" in line}
+    loaded = {line.split()[-1] for line in open("/proc/self/maps", encoding="utf-8") if "libist_loop.so" in line}
     if loaded != {str(expected)}:
         sys.exit(f"ask: {ist.__file__} has loaded {loaded}, and not {expected}")
     fixed, moving = (ist.build(jaw, voxel_size=0.8) for jaw in ist.jaws())

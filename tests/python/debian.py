@@ -31,7 +31,7 @@ class DebianPackage:
         require(content == expected, f"it holds {content}")
 
         environment = {"PYTHONPATH": f"{root.path}/{PLACE}", "LD_LIBRARY_PATH": str(root.libraries)}
-        answers = self.answers(PYTHON, root.libraries / "libist.so.0", **environment)
+        answers = self.answers(PYTHON, root.libraries / "libist_loop.so.0", **environment)
         require(answers == self.expected(), f"it answers\n{answers}")
         said = run(PYTHON, "-B", "-c", "import importlib.metadata as m; print(m.version('ist'))", env=clean_environment(**environment))
         require(said.strip() == version, f"its metadata say {said}")

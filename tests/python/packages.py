@@ -30,7 +30,7 @@ class Packages(WithoutLibrary, DebianPackage):
         self.work, self.build = arguments.work, arguments.build
         self.compiler, self.unity = arguments.compiler, arguments.unity
         self.made = self.work / "packages"
-        self.portable = self.made / "src/package/libist.so.0"
+        self.portable = self.made / "src/package/libist_loop.so.0"
         self.version = re.search(r"project\(ist VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text())[1]
         self.machine = os.uname().machine
 
@@ -81,7 +81,7 @@ class Packages(WithoutLibrary, DebianPackage):
         needed = set(re.findall(r"\(NEEDED\).*\[(.*)\]", dynamic))
         strangers = {name for name in needed if not re.fullmatch(r"libc\.so\.6|libm\.so\.6|ld-linux-.*\.so\.\d", name)}
         require("libc.so.6" in needed and not strangers, f"it needs {needed}")
-        require("[libist.so.0]" in dynamic and "BIND_NOW" in dynamic, f"no SONAME, or bound late:\n{dynamic}")
+        require("[libist_loop.so.0]" in dynamic and "BIND_NOW" in dynamic, f"no SONAME, or bound late:\n{dynamic}")
         require("RUNPATH" not in dynamic and "RPATH" not in dynamic, f"it looks for others where it was built:\n{dynamic}")
         run(PYTHON, "-B", SOURCE / "tests/package/symbols.py", self.portable)
         versions = re.findall(r"@GLIBC_([\d.]+)", run("nm", "-D", "--undefined-only", self.portable))
@@ -100,10 +100,10 @@ class Packages(WithoutLibrary, DebianPackage):
             content = {name: archive.read(name) for name in archive.namelist()}
         rest = sorted(name for name in content if not name.startswith(info))
         licences = [f"ist/{name}" for name in LICENCES]
-        require(rest == sorted([*modules(), "ist/libist.so.0", *licences]), f"it holds {rest}")
+        require(rest == sorted([*modules(), "ist/libist_loop.so.0", *licences]), f"it holds {rest}")
         for name in modules():
             require(content[name] == (SOURCE / "src/python" / name).read_bytes(), f"{name} is another one")
-        require(content["ist/libist.so.0"] == self.portable.read_bytes(), "its library is another one")
+        require(content["ist/libist_loop.so.0"] == self.portable.read_bytes(), "its library is another one")
         for name in licences:
             require(b"opyright" in content[name], f"{name} holds no licence")
         said = content[f"{info}/METADATA"].decode()
@@ -118,7 +118,7 @@ class Packages(WithoutLibrary, DebianPackage):
         venv = self.venv("venv", self.one("*.whl"))
         files = self.installed(venv)
         require(set(modules()) < set(files), f"installed are {files}")
-        library = next(venv.glob("lib/python3*/site-packages/ist/libist.so.0"))
+        library = next(venv.glob("lib/python3*/site-packages/ist/libist_loop.so.0"))
         here, there = self.answers(venv / "bin/python", library), self.expected()
         require(here == there, f"the wheel answers\n{here}and the library of this build\n{there}")
         ran = tries(venv / "bin/python", "-B", "-m", "doctest", SOURCE / "src/python/README.md")
@@ -157,7 +157,7 @@ class Packages(WithoutLibrary, DebianPackage):
         require(answers == self.expected(), f"by its SONAME it answers\n{answers}")
         if os.environ.get("IST_COMPILE_ALL") == "1":
             own = self.venv("sdist_built", archive, CXX=self.compiler)
-            library = next(own.glob("lib/python3*/site-packages/ist/libist.so.0"))
+            library = next(own.glob("lib/python3*/site-packages/ist/libist_loop.so.0"))
             answers = self.answers(own / "bin/python", library)
             require(answers == self.expected(), f"built from the sdist it answers\n{answers}")
 

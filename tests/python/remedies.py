@@ -26,16 +26,16 @@ class WithoutLibrary:
         folder = self.fresh("remedies")
         with zipfile.ZipFile(self.one("*.whl")) as wheel:
             wheel.extractall(folder)
-        library = folder / "ist/libist.so.0"
+        library = folder / "ist/libist_loop.so.0"
         run(PYTHON, "-B", "-c", "import ist", env={"PYTHONPATH": str(folder)})  # it does work before
         library.unlink()
-        cases = {"none": (self.refused(folder), ["libist.so.0", "libist0", "wheel", "IST_LIBRARY"])}
+        cases = {"none": (self.refused(folder), ["libist_loop.so.0", "libist0", "wheel", "IST_LIBRARY"])}
         missing = folder / "missing.so"
         cases["a missing file"] = self.refused(folder, IST_LIBRARY=missing), [str(missing), "IST_LIBRARY"]
         missing.write_text("no library\n")
         cases["a text"] = self.refused(folder, IST_LIBRARY=missing), [str(missing), "IST_LIBRARY"]
         for name, (source, words) in OTHERS.items():
-            run("cc", "-shared", "-fPIC", "-x", "c", "-", "-o", library, "-Wl,-soname,libist.so.0", input=source)
+            run("cc", "-shared", "-fPIC", "-x", "c", "-", "-o", library, "-Wl,-soname,libist_loop.so.0", input=source)
             cases[name] = self.refused(folder), [str(library), *words]
         for name, (said, words) in cases.items():
             lacks = [word for word in words if word not in said]

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "ist/base/error.h"
-#include "ist/haptics/effects/contact_effect.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/sphere_tree.h"
+#include "loop/haptics/effects/contact_effect.h"
 #include "scene/scene_case.h"
 #include "support/errors.h"
 #include "support/shapes.h"

@@ -5,9 +5,9 @@
 #include <map>
 #include <set>
 
-#include "ist/haptics/tool.h"
-#include "ist/scene/make_effects.h"
-#include "ist/scene/scene_parts.h"
+#include "loop/haptics/tool.h"
+#include "loop/scene/make_effects.h"
+#include "loop/scene/scene_parts.h"
 #include "scene/scene_case.h"
 
 namespace ist::test {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "ist/models/models.h"
-#include "ist/scene/make_effects.h"
 #include "ist/tree/sphere_tree.h"
+#include "loop/scene/make_effects.h"
 #include "scene/scene_case.h"
 #include "support/scoped_variable.h"
 #include "support/temp_dir.h"

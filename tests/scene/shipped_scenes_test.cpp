@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "ist/scene/make_effects.h"
+#include "loop/scene/make_effects.h"
 #include "support/data_dir.h"
 #include "support/effort.h"
 #include "support/scoped_variable.h"

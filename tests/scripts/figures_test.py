@@ -74,13 +74,13 @@ class Sources(unittest.TestCase):
     """Figures rest on what their program includes, directly or not."""
 
     def test_a_benchmark_rests_on_the_rooms_that_it_asks(self):
-        for maker, rooms in (("sweep_bench", ["src/ist/sweep", "src/ist/measure", "src/python/ist"]),
-                             ("loop_bench", ["src/ist/scene", "src/ist/haptics"]),
+        for maker, rooms in (("sweep_bench", ["src/sweep", "src/ist/measure", "src/python/ist"]),
+                             ("loop_bench", ["src/loop/scene", "src/loop/haptics"]),
                              ("deadline_bench", ["tests/support/conformal.cpp", "src/ist/query/traversal", "simd"]),
                              ("hardware_bench", ["src/hardware/include/ist/hardware", "tests/hardware/pair_walk.h"]),
-                             ("peers_bench", ["src/ist/measure", "src/ist/query/triangles"]), ("stability_border.py", ["src/ist/haptics"])):
+                             ("peers_bench", ["src/ist/measure", "src/ist/query/triangles"]), ("stability_border.py", ["src/loop/haptics"])):
             self.assertEqual(set(rooms) - set(figures.sources_of(maker)), set(), maker)
-        self.assertNotIn("src/ist/haptics", figures.sources_of("ablation_bench"))
+        self.assertNotIn("src/loop/haptics", figures.sources_of("ablation_bench"))
         self.assertNotIn("src/ist/mesh/format", figures.sources_of("peers_bench"))
 
     def test_a_maker_of_nothing_is_refused(self):

@@ -8,6 +8,7 @@
 
 #include "capi/c_bodies.h"
 #include "ist/capi/ist_measure.h"
+#include "ist/capi/ist_models.h"
 #include "ist/capi/ist_world.h"
 #include "stability/float_environment_case.h"
 

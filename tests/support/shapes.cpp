@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "ist/models/models.h"
-#include "ist/models/shape_rings.h"
+#include "models/shape_rings.h"
 
 namespace ist::test {
 

@@ -1,6 +1,6 @@
 // The merge of all parts into one table: the order of rows, the checks, and no half-written file.
 
-#include "ist/sweep/merge_parts.h"
+#include "sweep/merge_parts.h"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "ist/base/checksum.h"
-#include "ist/sweep/npy_file.h"
-#include "ist/sweep/sweep_record.h"
 #include "support/errors.h"
+#include "sweep/npy_file.h"
 #include "sweep/sweep_case.h"
+#include "sweep/sweep_record.h"
 
 namespace ist::test {
 namespace {

@@ -1,6 +1,6 @@
 // .npy files: written as numpy writes them, and read or refused with a remedy.
 
-#include "ist/sweep/npy_file.h"
+#include "sweep/npy_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The random numbers are numpy's, word by word.
 
-#include "ist/sweep/philox.h"
+#include "sweep/philox.h"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "ist/sweep/pose_source.h"
 #include "support/effort.h"
+#include "sweep/pose_source.h"
 
 namespace ist::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "ist/sweep/pose_source.h"
+#include "sweep/pose_source.h"
 
 namespace ist::test {
 namespace {

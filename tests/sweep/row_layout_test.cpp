@@ -1,6 +1,6 @@
 // The columns of rows, and the numbers in them.
 
-#include "ist/sweep/row_layout.h"
+#include "sweep/row_layout.h"
 
 #include <gtest/gtest.h>
 

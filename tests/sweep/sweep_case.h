@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "ist/sweep/sweep.h"
 #include "support/temp_dir.h"
+#include "sweep/sweep.h"
 
 namespace ist::test {
 

@@ -1,6 +1,6 @@
 // Sweep files: each value has its place, and a wrong one is refused with line and remedy.
 
-#include "ist/sweep/sweep_file.h"
+#include "sweep/sweep_file.h"
 
 #include <gtest/gtest.h>
 

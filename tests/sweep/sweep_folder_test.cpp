@@ -6,9 +6,9 @@
 #include <cmath>
 #include <fstream>
 
-#include "ist/sweep/sweep_record.h"
 #include "support/errors.h"
 #include "sweep/sweep_case.h"
+#include "sweep/sweep_record.h"
 
 namespace ist::test {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "ist/sweep/merge_parts.h"
-#include "ist/sweep/sweep.h"
 #include "support/german_locale.h"
 #include "support/shapes.h"
+#include "sweep/merge_parts.h"
+#include "sweep/sweep.h"
 #include "sweep/sweep_case.h"
 
 namespace ist::test {

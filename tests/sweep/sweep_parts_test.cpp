@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "ist/measure/row_numbers.h"
-#include "ist/sweep/npy_file.h"
-#include "ist/sweep/start_mark.h"
-#include "ist/sweep/sweep_record.h"
 #include "support/errors.h"
 #include "support/shapes.h"
+#include "sweep/npy_file.h"
+#include "sweep/start_mark.h"
 #include "sweep/sweep_case.h"
+#include "sweep/sweep_record.h"
 
 namespace ist::test {
 namespace {

@@ -16,8 +16,8 @@
 #include "cli/progress_bar.h"
 #include "cli/sweeps/part_words.h"
 #include "ist/base/cancellation.h"
-#include "ist/sweep/merge_parts.h"
-#include "ist/sweep/sweep.h"
+#include "sweep/merge_parts.h"
+#include "sweep/sweep.h"
 
 namespace ist::cli {
 

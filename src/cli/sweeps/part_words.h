@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ist/base/progress.h"
-#include "ist/sweep/sweep.h"
+#include "sweep/sweep.h"
 
 namespace ist::cli {
 

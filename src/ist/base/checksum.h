@@ -7,17 +7,18 @@
 #include <memory>
 #include <string>
 
+#include "ist/base/api.h"
 #include "ist/base/files.h"
 
 namespace ist {
 
 /// Returns the XXH3-128 of a file's content, 32 hexadecimal digits. Throws kFileUnreadable. Has
 /// cancellation points.
-[[nodiscard]] std::string hash_of_file(const InputFile& file);
-[[nodiscard]] std::string hash_of_file(const std::filesystem::path& file);
+[[nodiscard]] IST_LOOP_API std::string hash_of_file(const InputFile& file);
+[[nodiscard]] IST_LOOP_API std::string hash_of_file(const std::filesystem::path& file);
 
 /// Computes the XXH3-64 of all bytes added.
-class Checksum {
+class IST_LOOP_API Checksum {
  public:
   Checksum();
   ~Checksum();
@@ -30,7 +31,7 @@ class Checksum {
 };
 
 /// Computes the XXH3-128 of all bytes added, for which no two different files are known by chance.
-class ContentHash {
+class IST_LOOP_API ContentHash {
  public:
   ContentHash();
   ~ContentHash();

@@ -6,13 +6,14 @@
 #include <span>
 #include <string>
 
+#include "ist/base/api.h"
 #include "ist/base/error.h"
 
 namespace ist {
 
 /// Reads a regular file from front to back. Every function throws kFileUnreadable with the file and
 /// the cause. Reading has cancellation points (cancellation.h).
-class InputFile {
+class IST_LOOP_API InputFile {
  public:
   explicit InputFile(std::filesystem::path file);
   ~InputFile();
@@ -63,7 +64,7 @@ class UnwritableFile : public Error {
 ///
 /// Every function throws UnwritableFile with the file and the cause. write() and commit() have
 /// cancellation points. An OutputFile belongs to one thread at a time.
-class OutputFile {
+class IST_LOOP_API OutputFile {
  public:
   explicit OutputFile(std::filesystem::path target);
   ~OutputFile();

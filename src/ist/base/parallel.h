@@ -6,6 +6,8 @@
 #include <memory>
 #include <span>
 
+#include "ist/base/api.h"
+
 namespace ist {
 
 /// Calls `body(begin, end)` on consecutive ranges that cover [0, count), on all cores. Each range
@@ -13,8 +15,8 @@ namespace ist {
 /// threads, so a body that writes by range gives the same result for any number. Each range runs in
 /// a ScopedFloatEnvironment. An exception of the body reaches the caller. The body may run a loop
 /// of its own, even under a lock that other ranges wait for.
-void parallel_for(std::size_t count, std::size_t grain,
-                  const std::function<void(std::size_t begin, std::size_t end)>& body);
+IST_LOOP_API void parallel_for(std::size_t count, std::size_t grain,
+                               const std::function<void(std::size_t begin, std::size_t end)>& body);
 
 /// Sorts `keys` in ascending order, on all cores.
 void parallel_sort(std::span<std::uint64_t> keys);
@@ -45,6 +47,6 @@ void run_aside(void (*run)(void* context), void* context);
 
 /// Returns the number of threads that a loop uses by default, the caller's included: that of the
 /// processors which it may run on.
-[[nodiscard]] std::size_t thread_count();
+[[nodiscard]] IST_LOOP_API std::size_t thread_count();
 
 }  // namespace ist

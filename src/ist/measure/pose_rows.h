@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "ist/base/api.h"
 #include "ist/base/progress.h"
 #include "ist/measure/penetration.h"
 #include "ist/query/manifold.h"
@@ -52,9 +53,10 @@ struct RowSearch {
 ///
 /// Returns whether all rows were given. Throws kTrianglesMissing, kArgumentInvalid (tolerance),
 /// kMemoryLimit. Cost: that of the verbs; each further thread makes a query of its own, a few ms.
-bool answer_rows(const RowSearch& search, std::span<const Eigen::Isometry3d> poses,
-                 const RowQuestions& questions, std::size_t threads,
-                 const std::function<void(std::size_t index, const PoseRow& row)>& give,
-                 const Proceed& proceed = {});
+IST_LOOP_API bool answer_rows(
+    const RowSearch& search, std::span<const Eigen::Isometry3d> poses,
+    const RowQuestions& questions, std::size_t threads,
+    const std::function<void(std::size_t index, const PoseRow& row)>& give,
+    const Proceed& proceed = {});
 
 }  // namespace ist

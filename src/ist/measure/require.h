@@ -3,12 +3,13 @@
 #include <Eigen/Geometry>
 #include <string_view>
 
+#include "ist/base/api.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist {
 
 /// Throws kTrianglesMissing, naming `body`, where the tree holds no triangles.
-void require_triangles(const SphereTree& tree, std::string_view body);
+IST_LOOP_API void require_triangles(const SphereTree& tree, std::string_view body);
 
 /// Returns the rigid motion of project_to_rigid(). Throws kPoseInvalid, naming `pose`, where it is
 /// none.

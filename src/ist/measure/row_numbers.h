@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "ist/base/api.h"
 #include "ist/measure/pose_rows.h"
 
 namespace ist {
@@ -32,7 +33,7 @@ struct RowNumbers {
 
 /// Returns the numbers of a row.
 /// @param stiffness of springs, N/mm³ where meshes are in mm
-[[nodiscard]] RowNumbers numbers_of(const PoseRow& row, double stiffness);
+[[nodiscard]] IST_LOOP_API RowNumbers numbers_of(const PoseRow& row, double stiffness);
 
 /// Returns the code of `not_closed` for a depth.
 [[nodiscard]] std::int32_t not_closed_code(const Penetration& found) noexcept;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <memory>
 
+#include "ist/base/api.h"
 #include "ist/mesh/mesh.h"
 #include "ist/query/results.h"
 
@@ -14,7 +15,7 @@ struct InsideState;
 
 /// Finds which of two meshes lies inside the other. Query::inside does so for two trees. Both
 /// meshes must outlive the test.
-class InsideTest {
+class IST_LOOP_API InsideTest {
  public:
   /// Finds the components of both meshes, and makes clusters of their triangles. Throws
   /// kMeshNotFinite or kMeshBadIndex. Cost: 0.4 µs a triangle.

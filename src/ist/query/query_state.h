@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "ist/base/api.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/pose.h"
 #include "ist/query/pair_cache/cached_search.h"
@@ -37,8 +38,9 @@ struct QueryState {
              const QueryOptions& options, const ScopedFloatEnvironment& environment);
 
   /// Returns the bytes that the memory of a query takes. Throws the same errors as the constructor.
-  [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed, const SphereTree& moving,
-                                             const QueryOptions& options);
+  [[nodiscard]] IST_LOOP_API static std::size_t bytes_for(const SphereTree& fixed,
+                                                          const SphereTree& moving,
+                                                          const QueryOptions& options);
   /// Returns the policy of a query of two trees.
   [[nodiscard]] static SpherePolicy policy_of(const SphereTree& fixed, const SphereTree& moving,
                                               const QueryOptions& options) noexcept {

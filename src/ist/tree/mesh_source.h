@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "ist/base/api.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist {
@@ -22,7 +23,7 @@ inline constexpr std::size_t kMaxSourceName = 255;
 
 /// Returns the reason why two trees cannot be compared, with a remedy: their meshes are in
 /// different frames, or in different units. Returns an empty string if they can be.
-[[nodiscard]] std::string contradiction(const SphereTree& a, std::string_view a_name,
-                                        const SphereTree& b, std::string_view b_name);
+[[nodiscard]] IST_LOOP_API std::string contradiction(const SphereTree& a, std::string_view a_name,
+                                                     const SphereTree& b, std::string_view b_name);
 
 }  // namespace ist

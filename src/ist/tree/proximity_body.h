@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ist/base/api.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist {
@@ -10,6 +11,6 @@ namespace ist {
 /// one leaf here, not all twenty cells whose spheres it overlaps. Precondition: the tree has
 /// proximity voxels.
 /// Cost: 1 µs a voxel.
-[[nodiscard]] SphereTree proximity_body(const SphereTree& tree);
+[[nodiscard]] IST_LOOP_API SphereTree proximity_body(const SphereTree& tree);
 
 }  // namespace ist

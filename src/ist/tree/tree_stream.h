@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "ist/base/api.h"
 #include "ist/base/checksum.h"
 #include "ist/base/error.h"
 #include "ist/base/files.h"
@@ -58,7 +59,7 @@ class TreeWriter {
 /// is checked against the bytes left in the file; the arrays' content may be trusted only after
 /// verify_checksum(). Throws kFileUnreadable, kNotATree, kTreeVersion, kTreeTruncated,
 /// kTreeCorrupt.
-class TreeReader {
+class IST_LOOP_API TreeReader {
  public:
   explicit TreeReader(const std::filesystem::path& file);
   /// @param memory the whole file; must outlive the reader

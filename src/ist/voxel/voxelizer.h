@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "ist/base/api.h"
 #include "ist/base/progress.h"
 #include "ist/mesh/mesh.h"
 #include "ist/voxel/voxel_set.h"
@@ -40,8 +41,9 @@ struct VoxelizerOptions {
                                 Progress* progress = nullptr);
 
 /// Returns the lattice of voxelize() over a mesh. Throws the errors of make_lattice.
-[[nodiscard]] Lattice lattice_of(const TriangleMesh& mesh, double voxel_size);
+[[nodiscard]] IST_LOOP_API Lattice lattice_of(const TriangleMesh& mesh, double voxel_size);
 /// Returns the error that lattice_of() would throw, or nullopt.
-[[nodiscard]] std::optional<Error> lattice_flaw(const TriangleMesh& mesh, double voxel_size);
+[[nodiscard]] IST_LOOP_API std::optional<Error> lattice_flaw(const TriangleMesh& mesh,
+                                                             double voxel_size);
 
 }  // namespace ist

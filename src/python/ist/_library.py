@@ -8,7 +8,7 @@ from ctypes import c_int32, c_uint32
 
 from ._c import IST_ABI_VERSION as ABI_VERSION, PROTOTYPES
 
-SONAME = "libist.so.0"
+SONAME = "libist_loop.so.0"
 
 
 def candidates():

@@ -8,7 +8,7 @@
 #include "haptics/bodies/body_cases.h"
 #include "haptics/human_pair.h"
 #include "ist/haptics/simulation.h"
-#include "ist/haptics/stability_border.h"
+#include "loop/haptics/stability_border.h"
 #include "support/effort.h"
 #include "support/random.h"
 

@@ -1,4 +1,4 @@
-#include "ist/haptics/bodies/hand_bodies.h"
+#include "loop/haptics/bodies/hand_bodies.h"
 
 #include <gtest/gtest.h>
 

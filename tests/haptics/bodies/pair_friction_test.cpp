@@ -4,8 +4,8 @@
 
 #include "haptics/bodies/body_cases.h"
 #include "haptics/effects/effect_case.h"
-#include "ist/haptics/effects/friction_effect.h"
-#include "ist/haptics/simulation_parts.h"
+#include "loop/haptics/effects/friction_effect.h"
+#include "loop/haptics/simulation_parts.h"
 #include "support/shapes.h"
 
 namespace ist::test {

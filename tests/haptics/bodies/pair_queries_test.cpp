@@ -1,4 +1,4 @@
-#include "ist/haptics/bodies/pair_queries.h"
+#include "loop/haptics/bodies/pair_queries.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "haptics/bodies/body_cases.h"
 #include "ist/haptics/simulation.h"
-#include "ist/haptics/tool.h"
+#include "loop/haptics/tool.h"
 #include "support/effort.h"
 #include "support/random.h"
 #include "support/shapes.h"

@@ -1,4 +1,4 @@
-#include "ist/haptics/bodies/tool_contact_query.h"
+#include "loop/haptics/bodies/tool_contact_query.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ist/haptics/devices/hand_device.h"
+#include "loop/haptics/devices/hand_device.h"
 
 #include <gtest/gtest.h>
 

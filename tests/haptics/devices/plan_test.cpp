@@ -1,4 +1,4 @@
-#include "ist/haptics/devices/plan.h"
+#include "loop/haptics/devices/plan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ist/haptics/devices/script_device.h"
+#include "loop/haptics/devices/script_device.h"
 
 #include <gtest/gtest.h>
 

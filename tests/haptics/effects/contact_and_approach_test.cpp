@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "haptics/effects/effect_case.h"
-#include "ist/haptics/effects/contact_effect.h"
-#include "ist/haptics/effects/damping_effect.h"
-#include "ist/haptics/effects/proximity_effect.h"
+#include "loop/haptics/effects/contact_effect.h"
+#include "loop/haptics/effects/damping_effect.h"
+#include "loop/haptics/effects/proximity_effect.h"
 #include "support/effort.h"
 
 namespace ist::test {

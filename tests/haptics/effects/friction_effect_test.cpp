@@ -1,4 +1,4 @@
-#include "ist/haptics/effects/friction_effect.h"
+#include "loop/haptics/effects/friction_effect.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "haptics/effects/effect_case.h"
-#include "ist/haptics/effects/gravity_effect.h"
-#include "ist/haptics/effects/snap_effect.h"
+#include "loop/haptics/effects/gravity_effect.h"
+#include "loop/haptics/effects/snap_effect.h"
 #include "support/effort.h"
 
 namespace ist::test {

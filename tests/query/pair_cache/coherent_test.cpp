@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "ist/haptics/bodies/tool_contact_query.h"
 #include "ist/scene.h"
+#include "loop/haptics/bodies/tool_contact_query.h"
 #include "query/pair_cache/kept_answers.h"
 #include "query/pair_cache/motions.h"
 #include "query/test_clocks.h"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ist/base/access.h"
+#include "ist/base/api.h"
 #include "ist/base/float_environment.h"
 #include "ist/query/contacts/leaf_sums.h"
 #include "ist/query/manifold.h"
@@ -152,8 +153,9 @@ class ContactReducer {
   [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
   /// Returns the bytes that a reducer for this fixed tree reserves. Throws kArgumentInvalid for an
   /// option out of range.
-  [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed, const SphereTree& moving,
-                                             const ManifoldOptions& options);
+  [[nodiscard]] IST_LOOP_API static std::size_t bytes_for(const SphereTree& fixed,
+                                                          const SphereTree& moving,
+                                                          const ManifoldOptions& options);
 
  private:
   const SphereTree fixed_, moving_;  // which share the content

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "c/guard.h"
+#include "ist/base/api.h"
+#include "ist/capi/ist_c.h"
+
+namespace ist::capi {
+
+/// The kind of the object of a handle.
+enum class HandleKind : std::uint8_t { kMesh = 1, kTree, kQuery, kServo, kWorld, kSweep };
+
+/// Whether any number of threads may use an object at a time, or one.
+enum class HandleUse : std::uint8_t { kShared, kAlone };
+
+/// Maps handles to objects. A handle consists of the object's kind, its slot and the number of
+/// times the slot was used; no pointer of this processor has such a value. The table therefore
+/// recognises a handle that was freed, has another kind or never existed, and reads no memory but
+/// its own.
+///
+/// A call takes the object and gives it back; the last user destroys an object that was removed
+/// meanwhile. take() and give_back() are one atomic operation each, repeated only while another
+/// thread changes the same slot; no function locks. Any number of threads may call all functions.
+class IST_LOOP_API HandleTable {
+ public:
+  using Destroy = void (*)(void* object) noexcept;
+  static constexpr std::size_t kSlots = std::size_t{1} << 16;
+
+  constexpr HandleTable() = default;
+  HandleTable(const HandleTable&) = delete;
+  HandleTable& operator=(const HandleTable&) = delete;
+
+  /// Takes ownership of the object and returns its handle. Returns 0 where all slots are in use;
+  /// the caller then keeps the object.
+  [[nodiscard]] std::uint64_t insert(HandleKind kind, void* object, Destroy destroy) noexcept;
+
+  /// An object, or an error.
+  struct Taken {
+    ist_status status;
+    void* object;
+  };
+  [[nodiscard]] Taken take(std::uint64_t handle, HandleKind kind, HandleUse use) noexcept;
+  /// Ends a use that take() began.
+  void give_back(std::uint64_t handle) noexcept;
+
+  /// Invalidates the handle; the last user destroys the object.
+  [[nodiscard]] ist_status remove(std::uint64_t handle, HandleKind kind) noexcept;
+
+ private:
+  // `state` is the handle, with the flag kAlive and the number of users in place of the slot. An
+  // empty slot keeps only its count of uses, without mark and kind.
+  struct Slot {
+    std::atomic<std::uint64_t> state{0};
+    void* object = nullptr;
+    Destroy destroy = nullptr;
+  };
+  void empty(Slot& slot) noexcept;
+
+  std::array<Slot, kSlots> slots_{};
+  std::atomic<std::uint64_t> next_{0};  // next slot to try; slots take turns, to delay their reuse
+};
+
+/// The table of all handles of the process.
+[[nodiscard]] IST_LOOP_API HandleTable& handles() noexcept;
+
+static_assert(sizeof(void*) == sizeof(std::uint64_t), "a handle has the size of a pointer");
+
+// The type T of an object declares `using Handle`, its opaque C type; kKind; kUse; kName.
+
+template <typename Handle>
+[[nodiscard]] std::uint64_t number_of(const Handle* handle) noexcept {
+  return reinterpret_cast<std::uintptr_t>(handle);
+}
+
+/// Stores the message for an invalid handle, passed as `argument`, and returns the status.
+IST_LOOP_API ist_status fail_by_handle(const Call& call, ist_status status, const char* argument,
+                                       const char* kind);
+
+/// Moves a new object into the handle table and writes its handle to `out`.
+template <typename T>
+[[nodiscard]] ist_status give(const Call& call, std::unique_ptr<T> object,
+                              typename T::Handle** out) {
+  const std::uint64_t handle = handles().insert(
+      T::kKind, object.get(), [](void* taken) noexcept { delete static_cast<T*>(taken); });
+  if (handle == 0) return fail_by_handle(call, IST_TOO_MANY_HANDLES, "", T::kName);
+  static_cast<void>(object.release());
+  // The pointer is a number, never an address.
+  // NOLINTNEXTLINE(performance-no-int-to-ptr)
+  *out = reinterpret_cast<typename T::Handle*>(static_cast<std::uintptr_t>(handle));
+  return IST_OK;
+}
+
+/// Keeps the object of a handle alive during a call.
+template <typename T>
+class Held {
+ public:
+  Held(const Call& call, const char* argument, const typename T::Handle* handle)
+      : handle_(number_of(handle)), taken_(handles().take(handle_, T::kKind, T::kUse)) {
+    if (taken_.status != IST_OK) fail_by_handle(call, taken_.status, argument, T::kName);
+  }
+  ~Held() {
+    if (taken_.status == IST_OK) handles().give_back(handle_);
+  }
+  Held(const Held&) = delete;
+  Held& operator=(const Held&) = delete;
+
+  /// IST_OK, or the error; the message is then stored.
+  [[nodiscard]] ist_status status() const noexcept { return taken_.status; }
+  [[nodiscard]] T* operator->() const noexcept { return static_cast<T*>(taken_.object); }
+  [[nodiscard]] T& operator*() const noexcept { return *static_cast<T*>(taken_.object); }
+
+ private:
+  std::uint64_t handle_;
+  HandleTable::Taken taken_;
+};
+
+/// Implements every ..._free.
+template <typename T>
+[[nodiscard]] ist_status give_back(const char* function, typename T::Handle* handle) noexcept {
+  return guarded(function, [&](const Call& call) -> ist_status {
+    if (handle == nullptr) return IST_OK;
+    const ist_status status = handles().remove(number_of(handle), T::kKind);
+    return status == IST_OK ? status : fail_by_handle(call, status, T::kName, T::kName);
+  });
+}
+
+}  // namespace ist::capi

@@ -1,0 +1,319 @@
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "c/objects.h"
+#include "ist/capi/ist_measure.h"
+#include "ist/measure/first_contact.h"
+#include "ist/measure/occlusion.h"
+#include "ist/measure/penetration.h"
+#include "ist/measure/row_numbers.h"
+#include "ist/measure/signed_distance.h"
+
+namespace ist::capi {
+namespace {
+
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
+ist_surface_distance surface_distance_of(const SurfaceDistance& found) noexcept {
+  ist_surface_distance out;
+  out.distance = found.distance;
+  copy(found.closest, out.closest);
+  out.triangle = found.triangle;
+  out.is_signed = found.is_signed;
+  out.self_intersecting = found.self_intersecting;
+  return out;
+}
+
+ist_penetration penetration_of(const Penetration& found) {
+  ist_penetration out{};
+  const bool answered = found.status == Penetration::Status::kDone;
+  out.lower = answered ? found.lower : kNoNumber;
+  out.upper = answered ? found.upper : kNoNumber;
+  copy(found.point, out.point);
+  copy(found.direction, out.direction);
+  out.of_moving = found.of_moving;
+  out.triangle = found.triangle;
+  out.complete = found.complete;
+  out.not_closed = not_closed_code(found);
+  out.narrowest = found.narrowest;
+  out.points = found.points;
+  out.self_intersecting = self_intersecting_code(found);
+  out.capped = found.capped;
+  out.rotation_error = found.rotation_error;
+  return out;
+}
+
+Penetration penetration_of(const ist_penetration& given) {
+  Penetration last;
+  last.lower = given.lower;
+  last.upper = given.upper;
+  last.point = Eigen::Vector3d(given.point[0], given.point[1], given.point[2]);
+  last.of_moving = given.of_moving != 0;
+  last.triangle = given.triangle;
+  return last;
+}
+
+ist_first_contact first_contact_of(const FirstContact& found) {
+  ist_first_contact out{};
+  out.lower = found.lower;
+  out.upper = found.upper;
+  out.distance_lower = found.distance.lower;
+  out.distance_upper = found.distance.upper;
+  out.outcome = static_cast<std::int32_t>(found.status) + IST_FIRST_CONTACT;
+  out.grazed = found.grazed;
+  out.triangles_known = found.triangles.has_value();
+  if (found.triangles) {
+    out.fixed = found.triangles->fixed;
+    out.moving = found.triangles->moving;
+  }
+  out.narrowest = found.narrowest;
+  out.distances = found.distances;
+  out.self_intersecting = self_intersecting_code(found);
+  out.rotation_error = found.rotation_error;
+  return out;
+}
+static_assert(static_cast<int>(FirstContact::Status::kContact) + IST_FIRST_CONTACT ==
+                  IST_FIRST_CONTACT &&
+              static_cast<int>(FirstContact::Status::kStopped) + IST_FIRST_CONTACT ==
+                  IST_FIRST_STOPPED);
+
+Motion motion_of(const ist_motion& given) {
+  const Eigen::Isometry3d from = to_isometry(given.from);
+  if (given.to != nullptr) return Motion::between(from, to_isometry(given.to));
+  const auto vector = [](const double(&v)[3]) { return Eigen::Vector3d(v[0], v[1], v[2]); };
+  return Motion::screw(from, vector(given.point), vector(given.direction), given.angle,
+                       given.along);
+}
+
+ist_status read_options(const Call& call, const ist_occlusion_options* given,
+                        OcclusionOptions& options) {
+  options.limits.clear();
+  if (given == nullptr) return IST_OK;
+  ist_occlusion_options known;
+  if (const ist_status wrong = read_sized(call, "options", *given, known)) return wrong;
+  if (const ist_status wrong =
+          call.need_array("options->limits", known.limits, known.limit_count)) {
+    return wrong;
+  }
+  const auto take = [](double value, double& option) {
+    if (value != 0) option = value == -1 ? 0 : value;  // a NaN too, which is refused below
+  };
+  take(known.reach, options.reach);
+  take(known.contact, options.contact);
+  take(known.least_area, options.least_area);
+  take(known.longest_edge, options.longest_edge);
+  take(known.foundation, options.foundation);
+  take(known.change, options.change);
+  options.limits.assign(known.limits, known.limits + known.limit_count);
+  return IST_OK;
+}
+
+ist_status read_arrays(const Call& call, const char* name, const ist_occlusion_arrays* given,
+                       ist_occlusion_arrays& arrays) {
+  arrays = {};
+  if (given == nullptr) return IST_OK;
+  if (const ist_status wrong = read_sized(call, name, *given, arrays)) return wrong;
+  if (const ist_status missing =
+          call.need_array("arrays->distances", arrays.distances, arrays.distance_capacity)) {
+    return missing;
+  }
+  return call.need_array("arrays->regions", arrays.regions, arrays.region_capacity);
+}
+
+ist_contact_region region_of(const ContactRegion& region) {
+  ist_contact_region out{};
+  out.area = region.area;
+  copy(region.centre, out.centre);
+  out.least_distance = region.least_distance;
+  copy(region.closest, out.closest);
+  out.penetrating_area = region.penetrating_area;
+  out.depth_integral = region.depth_integral;
+  out.share = region.share;
+  out.share_thinner = region.share_thinner;
+  out.share_thicker = region.share_thicker;
+  out.triangle = region.triangle;
+  out.partner = region.partner ? static_cast<std::int32_t>(*region.partner) : -1;
+  return out;
+}
+
+void give_surface(const SurfaceOcclusion& found, double rotation_error,
+                  const ist_occlusion_arrays& arrays, ist_occlusion& out) {
+  const auto copy_first = [](const auto& from, auto* to, std::size_t capacity, auto convert) {
+    const auto count = static_cast<std::ptrdiff_t>(std::min(capacity, from.size()));
+    std::transform(from.begin(), from.begin() + count, to, convert);
+  };
+  copy_first(found.vertices, arrays.distances, arrays.distance_capacity, surface_distance_of);
+  copy_first(found.regions, arrays.regions, arrays.region_capacity, region_of);
+  if (arrays.areas != nullptr) std::copy(found.areas.begin(), found.areas.end(), arrays.areas);
+  ist_occlusion values{};
+  values.vertices = found.vertices.size();
+  values.regions = found.regions.size();
+  values.total_area = found.total_area;
+  values.penetrating_area = found.penetrating_area;
+  values.depth_integral = found.depth_integral;
+  values.depth_at_vertices = found.depth_at_vertices;
+  values.rotation_error = rotation_error;
+  write_sized(values, out);
+}
+
+}  // namespace
+
+static_assert(IST_FIXED_SELF_INTERSECTING == 1 && IST_MOVING_SELF_INTERSECTING == 2);
+static_assert(IST_CLOSED == 0 && IST_FIXED_NOT_CLOSED == 1 && IST_MOVING_NOT_CLOSED == 2);
+static_assert(SurfaceDistance::kNoTriangle == IST_NO_TRIANGLE);
+
+}  // namespace ist::capi
+
+using namespace ist::capi;
+
+ist_status ist_tree_signed_distance(const ist_tree* tree, const double* points, size_t count,
+                                    double reach, const ist_progress* progress,
+                                    ist_surface_distance* distances) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need_array("points", points, count)) return missing;
+    if (const ist_status missing = call.need_array("distances", distances, count)) return missing;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    const Held<Tree> held(call, "tree", tree);
+    if (held.status() != IST_OK) return held.status();
+    std::vector<Eigen::Vector3d> at(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      at[i] = Eigen::Vector3d(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
+    }
+    std::vector<ist::SurfaceDistance> found;
+    const bool whole = followed(follower, [&](const ist::Proceed& proceed) {
+      found = ist::signed_distance(held->tree, at, reach, proceed);
+    });
+    if (!whole) return cancelled(call);
+    std::transform(found.begin(), found.end(), distances, surface_distance_of);
+    return IST_OK;
+  });
+}
+
+ist_status ist_tree_distance_map(const ist_tree* body, const ist_tree* other, const double pose[16],
+                                 double reach, const ist_progress* progress,
+                                 ist_surface_distance* distances, size_t capacity,
+                                 uint64_t* vertices) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"vertices", vertices}})) return missing;
+    *vertices = 0;
+    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
+    if (const ist_status missing = call.need_array("distances", distances, capacity)) {
+      return missing;
+    }
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    const Held<Tree> held_body(call, "body", body);
+    if (held_body.status() != IST_OK) return held_body.status();
+    const Held<Tree> held_other(call, "other", other);
+    if (held_other.status() != IST_OK) return held_other.status();
+    const ist::SphereTree& of = held_body->tree;
+    std::vector<ist::SurfaceDistance> found;
+    const bool whole = followed(follower, [&](const ist::Proceed& proceed) {
+      found = ist::distance_map(of, held_other->tree, to_isometry(pose), reach, proceed);
+    });
+    if (!whole) return cancelled(call);
+    *vertices = found.size();
+    const std::size_t count = std::min(capacity, found.size());
+    std::transform(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), distances,
+                   surface_distance_of);
+    return IST_OK;
+  });
+}
+
+ist_status ist_query_penetration(ist_query* query, const double pose[16], double tolerance,
+                                 const ist_penetration* last, const ist_budget* budget,
+                                 const ist_progress* progress,
+                                 ist_penetration* result) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    // Read before the result is cleared: it may be the same struct.
+    ist_penetration known{};
+    const ist_status wrong_last = last == nullptr ? IST_OK : read_sized(call, "last", *last, known);
+    if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
+    if (wrong_last != IST_OK) return wrong_last;
+    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
+    ist::PenetrationOptions options;
+    if (const ist_status wrong = read_budget(call, budget, options.budget)) return wrong;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    const ist::Penetration before = penetration_of(known);
+    if (last != nullptr) options.last = &before;
+    const Held<QueryObject> held(call, "query", query);
+    if (held.status() != IST_OK) return held.status();
+    ist::Penetration found;
+    const bool whole = followed(follower, [&](const ist::Proceed& proceed) {
+      options.proceed = proceed;
+      found = ist::penetration(held->query, to_isometry(pose), tolerance, options);
+    });
+    if (!whole) return cancelled(call);
+    if (found.status == ist::Penetration::Status::kInvalidPose) {
+      return status_of(call, ist::QueryStatus::kInvalidPose, pose);
+    }
+    write_sized(penetration_of(found), *result);
+    return IST_OK;
+  });
+}
+
+ist_status ist_query_first_contact(ist_query* query, const ist_motion* motion, double tolerance,
+                                   const ist_budget* budget, const ist_progress* progress,
+                                   ist_first_contact* result) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
+    if (const ist_status missing = call.need({{"motion", motion}})) return missing;
+    ist_motion known;
+    if (const ist_status wrong = read_sized(call, "motion", *motion, known)) return wrong;
+    if (const ist_status missing = call.need({{"motion->from", known.from}})) return missing;
+    ist::FirstContactOptions options;
+    if (const ist_status wrong = read_budget(call, budget, options.budget)) return wrong;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    const Held<QueryObject> held(call, "query", query);
+    if (held.status() != IST_OK) return held.status();
+    ist::FirstContact found;
+    const bool whole = followed(follower, [&](const ist::Proceed& proceed) {
+      options.proceed = proceed;
+      found = ist::first_contact(held->query, motion_of(known), tolerance, options);
+    });
+    if (!whole) return cancelled(call);
+    write_sized(first_contact_of(found), *result);
+    return IST_OK;
+  });
+}
+
+ist_status ist_query_occlusion(ist_query* query, const double pose[16],
+                               const ist_occlusion_options* options, const ist_progress* progress,
+                               const ist_occlusion_arrays* fixed_arrays,
+                               const ist_occlusion_arrays* moving_arrays, ist_occlusion* fixed,
+                               ist_occlusion* moving) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    const ist_status wrong_fixed = clear_sized(call, "fixed", fixed);
+    const ist_status wrong_moving = clear_sized(call, "moving", moving);
+    if (wrong_fixed != IST_OK || wrong_moving != IST_OK) {
+      return wrong_fixed != IST_OK ? wrong_fixed : wrong_moving;
+    }
+    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
+    ist::OcclusionOptions asked;
+    if (const ist_status wrong = read_options(call, options, asked)) return wrong;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    ist_occlusion_arrays of_fixed, of_moving;
+    if (const ist_status wrong = read_arrays(call, "fixed_arrays", fixed_arrays, of_fixed)) {
+      return wrong;
+    }
+    if (const ist_status wrong = read_arrays(call, "moving_arrays", moving_arrays, of_moving)) {
+      return wrong;
+    }
+    const Held<QueryObject> held(call, "query", query);
+    if (held.status() != IST_OK) return held.status();
+    ist::Occlusion found;
+    const bool whole = followed(follower, [&](const ist::Proceed& proceed) {
+      asked.proceed = proceed;
+      found = ist::occlusion(held->query, to_isometry(pose), asked);
+    });
+    if (!whole) return cancelled(call);
+    give_surface(found.fixed, found.rotation_error, of_fixed, *fixed);
+    give_surface(found.moving, found.rotation_error, of_moving, *moving);
+    return IST_OK;
+  });
+}

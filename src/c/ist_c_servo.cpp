@@ -1,0 +1,226 @@
+#include <algorithm>
+#include <memory>
+#include <variant>
+
+#include "c/follower.h"
+#include "c/objects.h"
+#include "ist/base/float_environment.h"
+#include "ist/capi/ist_servo.h"
+#include "ist/haptics/servo_callback.h"
+#include "ist/scene.h"
+
+namespace ist::capi {
+namespace {
+
+struct Servo {
+  using Handle = ist_servo;
+  static constexpr HandleKind kKind = HandleKind::kServo;
+  static constexpr HandleUse kUse = HandleUse::kAlone;
+  static constexpr const char* kName = "servo";
+
+  Servo(BuiltScene built, const ServoCallbackOptions& options)
+      : scene(std::move(built)), callback(*scene.simulation, options) {}
+
+  BuiltScene scene;
+  ServoCallback callback;  // refers to the scene's simulation
+};
+
+// The stages that the trees of a body begin at most.
+constexpr std::size_t kMostStages = 6;
+
+struct OpenOptions {
+  ServoCallbackOptions callback;
+  std::uint64_t max_memory = BuildOptions{}.max_memory;
+  Follower follower;
+};
+
+ist_status read_servo_options(const Call& call, const ist_servo_options& given,
+                              OpenOptions& options) {
+  ist_servo_options known;
+  if (const ist_status wrong = read_sized(call, "options", given, known)) return wrong;
+  if (known.unit != IST_UNIT_M && known.unit != IST_UNIT_MM) {
+    return call.fail(IST_ARGUMENT_INVALID,
+                     "options->unit is {}: pass IST_UNIT_M or IST_UNIT_MM, the unit of the poses",
+                     known.unit);
+  }
+  if (known.reserved != 0) {
+    return call.fail(IST_ARGUMENT_INVALID, "options->reserved is {}: set it to 0", known.reserved);
+  }
+  if (!(known.query_time_fraction >= 0 && known.query_time_fraction <= 1)) {
+    return call.fail(IST_ARGUMENT_INVALID,
+                     "options->query_time_fraction is {}: pass a fraction of a tick, from 0 to 1",
+                     known.query_time_fraction);
+  }
+  options.callback.unit = known.unit == IST_UNIT_MM ? 0.001 : 1;
+  if (known.query_time_fraction > 0) {
+    options.callback.query_time_fraction = known.query_time_fraction;
+  }
+  if (known.sphere_tests > 0) options.callback.sphere_tests = known.sphere_tests;
+  if (known.max_memory > 0) options.max_memory = known.max_memory;
+  return read_follower(call, known.progress, options.follower);
+}
+
+// Replaces the scene's device by the caller, and keeps only the mechanics of the scene's device.
+void replace_device(Scene& scene) {
+  const auto mechanics_of = [](const auto& settings) { return settings.mechanics; };
+  scene.device = NullSettings{std::visit(mechanics_of, scene.device)};
+}
+
+ist_servo_info servo_info_of(const Servo& servo) {
+  ist_servo_info info{};
+  info.tick_seconds = servo.scene.simulation->dt();
+  const ServoCallback::Pose tool = servo.callback.tool();
+  std::copy(tool.begin(), tool.end(), info.tool);
+  const ServoCallback::Counts& counts = servo.callback.counts();
+  info.ticks = counts.ticks;
+  info.held = counts.held;
+  info.faults = counts.faults;
+  info.late = counts.late;
+  info.bodies = servo.scene.simulation->bodies();
+  return info;
+}
+
+ist_status refusal_of(const Call& call, const char* body, ist::ChangeStatus status) {
+  switch (status) {
+    case ist::ChangeStatus::kDone:
+      return IST_OK;
+    case ist::ChangeStatus::kUnknownBody:
+      return call.fail(IST_ARGUMENT_INVALID, "there is no body called {}: pass a name of the scene",
+                       body);
+    case ist::ChangeStatus::kFixedForGood:
+      return call.fail(IST_CHANGE_REFUSED,
+                       "{} stays where it is: write attachable = true in its table of the scene, "
+                       "which follows no script",
+                       body);
+    case ist::ChangeStatus::kAlreadyThere:
+      return call.fail(IST_CHANGE_REFUSED,
+                       "{} is there already: attach fixed bodies, release held ones", body);
+    case ist::ChangeStatus::kTouching:
+      return call.fail(IST_CHANGE_REFUSED,
+                       "something touches {}, or a body in the hand: move them apart first", body);
+    case ist::ChangeStatus::kUnfinished:
+      return call.fail(IST_CHANGE_REFUSED,
+                       "the time or the tests of a tick did not suffice for {}: try again, or give "
+                       "the options of the servo more",
+                       body);
+  }
+  return call.fail(IST_INTERNAL_ERROR, "a status without a message");
+}
+
+using Change = ist::ChangeStatus (ServoCallback::*)(std::size_t) noexcept;
+
+ist_status change_servo(const char* function, ist_servo* servo, const char* body, Change change) {
+  return guarded(function, [&](const Call& call) -> ist_status {
+    const Held<Servo> held(call, "servo", servo);
+    if (held.status() != IST_OK) return held.status();
+    if (const ist_status missing = call.need({{"body", body}})) return missing;
+    const Simulation& simulation = *held->scene.simulation;
+    std::size_t number = 0;
+    while (number < simulation.bodies() && simulation.body_name(number) != body) ++number;
+    return refusal_of(call, body, (held->callback.*change)(number));
+  });
+}
+
+}  // namespace
+}  // namespace ist::capi
+
+using namespace ist::capi;
+
+ist_status ist_servo_open_scene(const char* path, const ist_servo_options* options,
+                                ist_servo** servo) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"servo", servo}})) return missing;
+    *servo = nullptr;
+    if (const ist_status missing = call.need({{"path", path}, {"options", options}})) {
+      return missing;
+    }
+    OpenOptions asked;
+    if (const ist_status wrong = read_servo_options(call, *options, asked)) return wrong;
+    ist::Scene scene = ist::read_scene(path);
+    replace_device(scene);
+    ist::Progress progress;
+    std::unique_ptr<Servo> made;
+    const auto stages =
+        static_cast<unsigned>(kMostStages * (scene.fixed.size() + scene.held.size()));
+    const bool whole = followed(asked.follower, progress, stages, [&] {
+      made = std::make_unique<Servo>(ist::build_scene(scene, {}, asked.max_memory, &progress),
+                                     asked.callback);
+    });
+    return whole ? give(call, std::move(made), servo) : cancelled(call);
+  });
+}
+
+const char* ist_servo_warning(ist_servo* servo, size_t index) IST_NOEXCEPT {
+  const char* text = nullptr;
+  static_cast<void>(guarded(__func__, [&](const Call& call) -> ist_status {
+    const Held<Servo> held(call, "servo", servo);
+    if (held.status() != IST_OK) return held.status();
+    const std::vector<std::string>& warnings = held->scene.warnings;
+    if (index < warnings.size()) text = warnings[index].c_str();
+    return IST_OK;
+  }));
+  return text;
+}
+
+ist_status ist_servo_get_info(ist_servo* servo, ist_servo_info* info) IST_NOEXCEPT {
+  return get_info<Servo>(__func__, servo, info, servo_info_of);
+}
+
+ist_status ist_servo_on_tick(ist_servo* servo, const double pose[16], double force[3],
+                             double torque[3]) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (force != nullptr) std::fill_n(force, 3, 0.0);
+    if (torque != nullptr) std::fill_n(torque, 3, 0.0);
+    const Held<Servo> held(call, "servo", servo);
+    if (held.status() != IST_OK) return held.status();
+    if (const auto missing = call.need({{"pose", pose}, {"force", force}, {"torque", torque}})) {
+      held->callback.fault();
+      return missing;
+    }
+    const ist::ServoTick tick =
+        held->callback.on_tick(std::span<const double, 16>(pose, 16),
+                               std::span<double, 3>(force, 3), std::span<double, 3>(torque, 3));
+    if (tick != ist::ServoTick::kFault) return IST_OK;
+    if (!ist::Placement::from(to_isometry(pose))) {
+      return status_of(call, ist::QueryStatus::kInvalidPose, pose);
+    }
+    return call.fail(
+        IST_SERVO_FAULT,
+        "a force was not a number: the output is zero, and forces return gradually; report "
+        "the scene if this repeats");
+  });
+}
+
+ist_status ist_servo_get_body(ist_servo* servo, size_t index, ist_servo_body* body) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status wrong = clear_sized(call, "body", body)) return wrong;
+    const Held<Servo> held(call, "servo", servo);
+    if (held.status() != IST_OK) return held.status();
+    const ist::Simulation& simulation = *held->scene.simulation;
+    if (index >= simulation.bodies()) {
+      return call.fail(IST_ARGUMENT_INVALID, "index is {}, and the scene has {} bodies", index,
+                       simulation.bodies());
+    }
+    const ist::ScopedFloatEnvironment environment;
+    ist_servo_body found{};
+    found.name = simulation.body_name(index).data();
+    found.held = simulation.is_held(index) ? 1 : 0;
+    Eigen::Isometry3d pose = simulation.body_pose(index).isometry();
+    pose.translation() /= held->callback.unit();
+    std::copy_n(pose.data(), 16, found.pose);
+    write_sized(found, *body);
+    return IST_OK;
+  });
+}
+
+ist_status ist_servo_attach(ist_servo* servo, const char* body) IST_NOEXCEPT {
+  return change_servo(__func__, servo, body, &ist::ServoCallback::attach);
+}
+
+ist_status ist_servo_release(ist_servo* servo, const char* body) IST_NOEXCEPT {
+  return change_servo(__func__, servo, body, &ist::ServoCallback::release);
+}
+
+ist_status ist_servo_free(ist_servo* servo) IST_NOEXCEPT {
+  return give_back<Servo>(__func__, servo);
+}

@@ -1,0 +1,347 @@
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "c/objects.h"
+#include "ist/capi/ist_world.h"
+#include "ist/query/world/world.h"
+
+namespace ist::capi {
+namespace {
+
+static_assert(IST_MOST_BODIES == kMostBodies);
+
+struct WorldObject {
+  using Handle = ist_world;
+  static constexpr HandleKind kKind = HandleKind::kWorld;
+  static constexpr HandleUse kUse = HandleUse::kAlone;
+  static constexpr const char* kName = "world";
+
+  explicit WorldObject(const WorldOptions& options) : world(options) {}
+  World world;
+};
+
+// Converts the status of a whole answer; stores the message of an error. `pose` is the pose that
+// was asked about, or null.
+ist_status status_of_world(const Call& call, QueryStatus status, const double* pose = nullptr) {
+  if (status == QueryStatus::kNoSuchBody) {
+    return call.fail(IST_ARGUMENT_INVALID, "no body has this number: pass one that was added");
+  }
+  if (status == QueryStatus::kNotPrepared) {
+    return call.fail(IST_NOT_PREPARED,
+                     "the world is not prepared: call ist_world_prepare after the last body");
+  }
+  return status_of(call, status, pose);
+}
+
+ist_status read_world_options(const Call& call, const ist_world_options* given,
+                              WorldOptions& options) {
+  if (given == nullptr) return IST_OK;
+  ist_world_options known;
+  if (const ist_status wrong = read_sized(call, "options", *given, known)) return wrong;
+  if (known.query != nullptr) {
+    CQueryOptions query;
+    if (const ist_status wrong = read_query_options(call, *known.query, query)) return wrong;
+    options.query = query.query;
+    if (query.manifold) options.manifold = *query.manifold;
+    if (!query.manifold) options.manifold.points = 0;
+  }
+  options.reach = known.reach;
+  if (known.most_near > 0) options.most_near = known.most_near;
+  if (known.max_memory > 0) options.max_memory = known.max_memory;
+  return IST_OK;
+}
+
+// The pairs of a caller; empty for all.
+std::optional<std::vector<BodyPair>> pairs_of(const ist_body_pair* pairs, std::size_t count) {
+  if (pairs == nullptr) return std::nullopt;
+  std::vector<BodyPair> made;
+  for (const auto& [a, b] : std::span(pairs, count)) made.push_back({a, b});
+  return made;
+}
+
+// Returns the status of a pair. It is no error of the call.
+ist_status status_of_pair(QueryStatus status) {
+  switch (status) {
+    case QueryStatus::kDone:
+      return IST_OK;
+    case QueryStatus::kInvalidPose:
+      return IST_POSE_INVALID;
+    case QueryStatus::kNoTriangles:
+      return IST_TRIANGLES_MISSING;
+    default:
+      return IST_NOT_PREPARED;
+  }
+}
+
+ist_world_pair pair_of(const WorldPair& pair) {
+  ist_world_pair out{};
+  out.a = pair.bodies.a;
+  out.b = pair.bodies.b;
+  out.status = status_of_pair(pair.status);
+  out.answer = answer_of(pair.answer);
+  out.complete = pair.complete;
+  out.truncated = pair.truncated;
+  out.distance_lower = pair.distance.lower;
+  out.distance_upper = pair.distance.upper;
+  out.found = pair.found;
+  out.first = pair.first;
+  out.written = pair.written;
+  out.contacts = pair.manifold != nullptr ? pair.manifold->points().size() : 0;
+  out.resolution = pair.resolution;
+  out.narrowest = pair.narrowest;
+  out.sphere_tests = pair.sphere_tests;
+  out.rotation_error = pair.rotation_error;
+  return out;
+}
+
+std::optional<WorldQuestion::Kind> kind_of(std::int32_t ask) {
+  switch (ask) {
+    case IST_ASK_NEAR:
+      return WorldQuestion::kNear;
+    case IST_ASK_INTERSECTS:
+      return WorldQuestion::kIntersects;
+    case IST_ASK_LEAF_PAIRS:
+      return WorldQuestion::kLeafPairs;
+    case IST_ASK_DISTANCE:
+      return WorldQuestion::kDistance;
+    case IST_ASK_CONTACTS:
+      return WorldQuestion::kContacts;
+    case IST_ASK_TRIANGLE_PAIRS:
+      return WorldQuestion::kTrianglePairs;
+    default:
+      return std::nullopt;
+  }
+}
+
+ist_status check_tolerance(const Call& call, const char* name, double tolerance) {
+  if (tolerance >= 0) return IST_OK;
+  return call.fail(IST_ARGUMENT_INVALID, "{} is {}: pass a number of at least 0", name, tolerance);
+}
+
+ist_status read_question(const Call& call, const ist_world_question* given,
+                         WorldQuestion& question) {
+  if (const ist_status missing = call.need({{"question", given}})) return missing;
+  ist_world_question known;
+  if (const ist_status wrong = read_sized(call, "question", *given, known)) return wrong;
+  const auto kind = kind_of(known.ask);
+  if (!kind) {
+    return call.fail(IST_ARGUMENT_INVALID,
+                     "question->ask is {}: pass one IST_ASK_... other than a penetration",
+                     known.ask);
+  }
+  if (const ist_status wrong = check_tolerance(call, "question->tolerance", known.tolerance)) {
+    return wrong;
+  }
+  if (const ist_status missing =
+          call.need_array("question->leaf_pairs", known.leaf_pairs, known.leaf_capacity)) {
+    return missing;
+  }
+  if (const ist_status missing =
+          call.need_array("question->triangles", known.triangles, known.triangle_capacity)) {
+    return missing;
+  }
+  question = {*kind,
+              known.tolerance,
+              {reinterpret_cast<LeafPair*>(known.leaf_pairs), known.leaf_capacity},
+              {reinterpret_cast<TrianglePair*>(known.triangles), known.triangle_capacity}};
+  return IST_OK;
+}
+
+}  // namespace
+
+}  // namespace ist::capi
+
+using namespace ist::capi;
+
+ist_status ist_world_create(const ist_world_options* options, ist_world** world) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"world", world}})) return missing;
+    *world = nullptr;
+    ist::WorldOptions known;
+    if (const ist_status wrong = read_world_options(call, options, known)) return wrong;
+    return give(call, std::make_unique<WorldObject>(known), world);
+  });
+}
+
+ist_status ist_world_add(ist_world* world, const ist_tree* tree, const double pose[16],
+                         const char* name, uint32_t* body) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"body", body}})) return missing;
+    *body = 0;
+    const Held<WorldObject> held(call, "world", world);
+    if (held.status() != IST_OK) return held.status();
+    const Held<Tree> of_tree(call, "tree", tree);
+    if (of_tree.status() != IST_OK) return of_tree.status();
+    const Eigen::Isometry3d at =
+        pose == nullptr ? Eigen::Isometry3d::Identity() : to_isometry(pose);
+    *body = held->world.add(of_tree->tree, at, name == nullptr ? "" : name);
+    return IST_OK;
+  });
+}
+
+ist_status ist_world_ignore(ist_world* world, uint32_t a, uint32_t b) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    const Held<WorldObject> held(call, "world", world);
+    if (held.status() != IST_OK) return held.status();
+    held->world.ignore(a, b);
+    return IST_OK;
+  });
+}
+
+ist_status ist_world_bytes_needed(ist_world* world, const ist_body_pair* pairs, size_t count,
+                                  uint64_t* bytes) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"bytes", bytes}})) return missing;
+    *bytes = 0;
+    if (const ist_status missing = call.need_array("pairs", pairs, count)) return missing;
+    const Held<WorldObject> held(call, "world", world);
+    if (held.status() != IST_OK) return held.status();
+    const auto some = pairs_of(pairs, count);
+    *bytes = some ? held->world.bytes_needed(*some) : held->world.bytes_needed();
+    return IST_OK;
+  });
+}
+
+ist_status ist_world_prepare(ist_world* world, const ist_body_pair* pairs, size_t count,
+                             const ist_progress* progress) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need_array("pairs", pairs, count)) return missing;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    const Held<WorldObject> held(call, "world", world);
+    if (held.status() != IST_OK) return held.status();
+    const auto some = pairs_of(pairs, count);
+    bool prepared = false;
+    followed(follower, [&](const ist::Proceed& proceed) {
+      held->world.prepare(some, proceed);
+      prepared = true;
+    });
+    // A caller who says stop after the last pair is too late.
+    return prepared ? IST_OK : cancelled(call);
+  });
+}
+
+ist_status ist_world_get_info(ist_world* world, ist_world_info* info) IST_NOEXCEPT {
+  return get_info<WorldObject>(__func__, world, info, [](const WorldObject& of) {
+    return ist_world_info{0, of.world.bytes(), of.world.body_count()};
+  });
+}
+
+ist_status ist_world_set_pose(ist_world* world, uint32_t body, const double pose[16]) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
+    const Held<WorldObject> held(call, "world", world);
+    if (held.status() != IST_OK) return held.status();
+    return status_of_world(call, held->world.set_pose(body, to_isometry(pose)), pose);
+  });
+}
+
+ist_status ist_world_get_pose(ist_world* world, uint32_t a, uint32_t b,
+                              double pose[16]) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
+    std::fill_n(pose, 16, 0.0);
+    const Held<WorldObject> held(call, "world", world);
+    if (held.status() != IST_OK) return held.status();
+    if (std::max(a, b) >= held->world.body_count()) {
+      return status_of_world(call, ist::QueryStatus::kNoSuchBody);
+    }
+    const auto found = held->world.pose_of(a, b);
+    if (!found) return status_of(call, ist::QueryStatus::kInvalidPose);
+    std::copy_n(found->matrix().data(), 16, pose);
+    return IST_OK;
+  });
+}
+
+ist_status ist_world_forget(ist_world* world) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    const Held<WorldObject> held(call, "world", world);
+    if (held.status() != IST_OK) return held.status();
+    held->world.forget();
+    return IST_OK;
+  });
+}
+
+ist_status ist_world_free(ist_world* world) IST_NOEXCEPT {
+  return give_back<WorldObject>(__func__, world);
+}
+
+ist_status ist_world_ask(ist_world* world, const ist_world_question* question,
+                         const ist_budget* budget, ist_world_pair* pairs, size_t capacity,
+                         ist_world_result* result) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
+    if (const ist_status missing = call.need_array("pairs", pairs, capacity)) return missing;
+    ist::WorldQuestion asked;
+    if (const ist_status wrong = read_question(call, question, asked)) return wrong;
+    ist::Budget allowed;
+    if (const ist_status wrong = read_budget(call, budget, allowed)) return wrong;
+    const Held<WorldObject> held(call, "world", world);
+    if (held.status() != IST_OK) return held.status();
+    const ist::WorldAnswer found = held->world.ask(asked, allowed);
+    if (const ist_status wrong = status_of_world(call, found.status)) return wrong;
+    ist_world_result values{};
+    values.near_pairs = found.near_pairs;
+    values.written = std::min<std::uint64_t>(found.pairs.size(), capacity);
+    values.sphere_tests = found.sphere_tests;
+    values.complete = found.complete;
+    values.truncated = values.written < found.near_pairs;
+    std::transform(found.pairs.begin(),
+                   found.pairs.begin() + static_cast<std::ptrdiff_t>(values.written), pairs,
+                   pair_of);
+    write_sized(values, *result);
+    return IST_OK;
+  });
+}
+
+ist_status ist_world_get_contacts(ist_world* world, uint32_t a, uint32_t b, ist_contact* contacts,
+                                  size_t capacity, ist_contact_sums* sums,
+                                  uint64_t* count) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"count", count}})) return missing;
+    *count = 0;
+    if (sums != nullptr) {
+      if (const ist_status wrong = clear_sized(call, "sums", sums)) return wrong;
+    }
+    if (const ist_status missing = call.need_array("contacts", contacts, capacity)) return missing;
+    const Held<WorldObject> held(call, "world", world);
+    if (held.status() != IST_OK) return held.status();
+    const ist::ContactManifold* const manifold = held->world.manifold(a, b);
+    if (manifold == nullptr) {
+      return call.fail(IST_NOT_PREPARED,
+                       "the last ist_world_ask for IST_ASK_CONTACTS did not ask bodies {} and {}: "
+                       "prepare the pair, and look at its status",
+                       a, b);
+    }
+    const std::span<const ist::Contact> made = manifold->points();
+    *count = made.size();
+    const std::size_t written = std::min(made.size(), capacity);
+    std::transform(made.begin(), made.begin() + static_cast<std::ptrdiff_t>(written), contacts,
+                   contact_of);
+    if (sums != nullptr) write_sized(sums_of(manifold->sums()), *sums);
+    return IST_OK;
+  });
+}
+
+ist_status ist_world_distance(ist_world* world, double tolerance, const ist_budget* budget,
+                              ist_least_distance* result) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
+    if (const ist_status wrong = check_tolerance(call, "tolerance", tolerance)) return wrong;
+    ist::Budget allowed;
+    if (const ist_status wrong = read_budget(call, budget, allowed)) return wrong;
+    const Held<WorldObject> held(call, "world", world);
+    if (held.status() != IST_OK) return held.status();
+    const ist::WorldDistance found = held->world.distance(tolerance, allowed);
+    const bool lost = found.status == ist::QueryStatus::kInvalidPose;
+    if (!lost) {
+      if (const ist_status wrong = status_of_world(call, found.status)) return wrong;
+    }
+    const ist::BodyPair nearest = found.nearest.value_or(ist::BodyPair{});
+    write_sized({0, found.distance.lower, found.distance.upper, found.sphere_tests, found.complete,
+                 lost, found.nearest.has_value(), nearest.a, nearest.b, 0},
+                *result);
+    return IST_OK;
+  });
+}

@@ -1,0 +1,119 @@
+#include "loop/scene/scene_queries.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "loop/scene/scene_lines.h"
+
+namespace ist {
+namespace {
+
+// "contact points", or of several pairs "contact points, splint – mandible".
+std::string label_of(const PlacedBodies& of, const char* what, const HandPair& pair) {
+  if (of.pairs.size() == 1) return what;
+  return fmt::format("{}, {} – {}", what, of.bodies[pair.fixed].named->name,
+                     of.bodies[pair.held].named->name);
+}
+
+// A query of a pair before it is made.
+struct PlannedQuery {
+  const SphereTree &fixed, &held;
+  ToolContactOptions options;
+};
+
+PlannedQuery contact_query(const PlacedBodies& of, const HandPair& pair) {
+  const SphereTree &fixed = *of.trees[pair.fixed].contact, &held = *of.trees[pair.held].contact;
+  const SpherePolicy policy =
+      std::min(of.bodies[pair.fixed].named->spheres.value_or(fixed.tightest()),
+               of.bodies[pair.held].named->spheres.value_or(held.tightest()));
+  return {fixed, held,
+          ToolContactOptions{
+              .policy = policy,
+              .margin = of.scene.contact.value_or(ContactSettings()).margin,
+              .workers = of.scene.workers,
+              .period = std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * of.period))}};
+}
+
+PlannedQuery proximity_query(const PlacedBodies& of, const HandPair& pair) {
+  return {*of.trees[pair.fixed].near, *of.trees[pair.held].coarse,
+          ToolContactOptions{.policy = SpherePolicy::kTight, .margin = 2, .reach = 0}};
+}
+
+// Adds up what queries will reserve, before any of them is made, and refuses the one too many.
+class QueryMemory {
+ public:
+  QueryMemory(const PlacedBodies& of, std::uint64_t most) : of_(of), most_(most) {}
+
+  void add(const HandPair& pair, const PlannedQuery& query) {
+    bytes_ += ToolContactQuery::bytes_for(query.fixed, query.held, query.options);
+    if (bytes_ <= most_) return;
+    const LoadedBody &fixed = of_.bodies[pair.fixed], &held = of_.bodies[pair.held];
+    fail_at(of_.scene, fixed.table,
+            fmt::format("the queries up to that of {} and {} take {:.0f} MB, and {:.0f} MB are "
+                        "allowed: allow more with --max-memory, or take bodies out",
+                        fixed.named->name, held.named->name, 1e-6 * static_cast<double>(bytes_),
+                        1e-6 * static_cast<double>(most_)));
+  }
+
+ private:
+  const PlacedBodies& of_;
+  std::uint64_t most_, bytes_ = 0;
+};
+
+}  // namespace
+
+void build_queries(const PlacedBodies& of, const EffectNeeds& needs, const PlanReach& reach,
+                   std::uint64_t max_memory, BuildNotes& notes, detail::SimulationParts& parts) {
+  // A body brakes the tool from this distance on: proximity voxels reach as far as the scene says,
+  // and the leaves' cubes have a diagonal of less than that distance on either side.
+  const double near = needs.proximity && of.scene.proximity ? 3 * of.scene.proximity->distance : 0;
+  const auto may_meet = [&](const HandPair& pair) {
+    const LoadedBody &fixed = of.bodies[pair.fixed], &held = of.bodies[pair.held];
+    const bool lasts =
+        fixed.named->script.empty() && !fixed.named->attachable && !held.named->attachable;
+    return of.pairs.size() == 1 || !lasts || !needs.contacts() ||
+           !reach.keeps_apart(of.placed, pair, near);
+  };
+  QueryMemory memory(of, max_memory);
+  std::vector<bool> meet;
+  for (const HandPair& pair : of.pairs) {
+    meet.push_back(may_meet(pair));
+    if (!meet.back()) continue;
+    if (needs.contacts()) memory.add(pair, contact_query(of, pair));
+    if (needs.proximity) memory.add(pair, proximity_query(of, pair));
+  }
+  const auto make = [&](PairQueries& queries, const HandPair& pair, const char* what,
+                        const std::string& why, const PlannedQuery& query) {
+    queries.add(pair, notes.make(label_of(of, what, pair), why, [&] {
+      return std::make_unique<ToolContactQuery>(
+          query.fixed, query.held, of.placed.frames(pair.fixed, pair.held), query.options);
+    }));
+  };
+  for (std::size_t i = 0; i < of.pairs.size(); ++i) {
+    const HandPair& pair = of.pairs[i];
+    if (!meet[i]) {
+      const char* why = "their roots stay apart wherever the plan leads";
+      notes.skip(label_of(of, "contact points", pair), why);
+      parts.contacts.add_far(pair);
+      continue;
+    }
+    if (needs.contacts()) {
+      const std::string why = fmt::format("for effects at contacts; up to {} leaf pairs are kept",
+                                          ToolContactOptions().front_pairs);
+      make(parts.contacts, pair, "contact points", why, contact_query(of, pair));
+    }
+    if (needs.proximity) {
+      make(parts.proximity, pair, "proximity query", "for effects.proximity",
+           proximity_query(of, pair));
+    }
+  }
+  if (!needs.contacts()) notes.skip("contact points", "no effect needs them");
+  if (!needs.proximity) notes.skip("proximity query", "no effect needs it");
+}
+
+}  // namespace ist

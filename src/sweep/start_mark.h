@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "sweep/sweep_folder.h"
+
+namespace ist {
+
+/// Counts the starts of a part that were lost, and says whether somebody is making it now.
+struct PartStarts {
+  int lost = 0;  ///< by processes that died
+  bool live = false;
+};
+[[nodiscard]] PartStarts starts_of(const SweepFolder& folder, std::uint64_t part);
+
+/// Throws kPartBusy: another process is making the part.
+[[noreturn]] void fail_overlap(const SweepFolder& folder, std::uint64_t part);
+
+/// A mark beside a part that is being made: part-000017.start-1. It outlives a process that is
+/// killed, and so counts the starts that were lost. While its process lives the mark is locked
+/// (flock), by which others see that the part is being made.
+class StartMark {
+ public:
+  /// Makes the mark. Throws kPartBusy where another process, or thread, is making the part;
+  /// UnwritableFile. Precondition: fewer than kMostStarts starts were lost.
+  StartMark(const SweepFolder& folder, std::uint64_t part);
+  /// Removes the mark: this start ended in order.
+  ~StartMark();
+  StartMark(const StartMark&) = delete;
+  StartMark& operator=(const StartMark&) = delete;
+
+ private:
+  std::filesystem::path file_;
+  int descriptor_ = -1;
+};
+
+/// Removes the marks of all starts of a part that is there now.
+void remove_marks(const SweepFolder& folder, std::uint64_t part) noexcept;
+
+}  // namespace ist
