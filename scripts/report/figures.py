@@ -19,7 +19,7 @@ ROOT = pathlib.Path(__file__).parents[2]
 
 
 # Where compilers look for headers.
-FOLDERS = ("src", ".", "bench", "tests", "src/hardware/include")
+FOLDERS = ("src", ".", "bench", "tests", *(f"src/{library}/include" for library in ("c", "hardware", "loop", "models")))
 # What figures begin with, by the script or the benchmark that makes them, beside a benchmark's own files: sources and folders. They rest
 # on these, on the folder of each file of src and simd that these include, directly or not, and on all else that these include.
 BEGINS = {
@@ -28,7 +28,7 @@ BEGINS = {
     "ist bench": ["src/cli/commands/bench.cpp", "src/advise/closing_path.cpp", "src/models"],
     "mutate.py": ["examples", "scripts/mutants", "scripts/report", "scripts/try.py", "simd", "src", "tests"],
     "stability_border.py": ["bench/stability_border.cpp", "tests/haptics/wall_press.cpp"],
-    "stability_report.py": ["simd", "src/answers", "src/cli", "src/ist", "src/verify",
+    "stability_report.py": ["simd", "src/answers", "src/c", "src/cli", "src/ist", "src/loop", "src/models", "src/sweep", "src/verify",
                             *(f"tests/{room}" for room in ("capi", "cli", "fuzz", "query", "scene", "simd", "stability", "support"))],
     "sweep_bench": ["bench/python/sweep_loop.py", "src/c", "src/python/ist"],
     "target_instructions.py": ["tests/instructions"],
@@ -37,7 +37,8 @@ BEGINS = {
 # Those that no compiler of this project makes.
 UNCOMPILED = {"hardware_report.py", "mutate.py"}
 # Files of CMake. Their flags decide the compiled code; warnings, names of folders and exceptions from sanitizers do not.
-FLAGGED = ["CMakeLists.txt", "CMakePresets.json", "bench/CMakeLists.txt", "src/ist/CMakeLists.txt", "src/platform.cmake"]
+FLAGGED = ["CMakeLists.txt", "CMakePresets.json", "bench/CMakeLists.txt", "src/library.cmake", "src/platform.cmake",
+           *(f"src/{library}/CMakeLists.txt" for library in ("ist", "loop", "models", "sweep"))]
 FLAG = re.compile(r"(?<![\w-])-[OfmDs][\w=+,.-]*|CMAKE_(?:BUILD_TYPE|CXX_\w*FLAGS\w*|CXX_STANDARD|INTERPROCEDURAL_\w+)\W+\w+")
 IDLE = re.compile(r"-f\w+-prefix-map|-fno-sanitize|-fsanitize")
 # Those that count, and time nothing: a count is the same on every machine, whatever else runs there.
@@ -91,7 +92,8 @@ def included(begins):
         if file in seen or file.suffix not in (".h", ".cpp") or not file.is_file():
             continue
         seen.add(file)
-        waiting += [file.with_suffix(".h"), file.with_suffix(".cpp"), *file.with_suffix("").glob("*.*")]
+        source = pathlib.Path(str(file).replace("/include/ist/", "/"))  # of a public header
+        waiting += [file.with_suffix(".h"), source.with_suffix(".cpp"), *source.with_suffix("").glob("*.*")]
         for name in re.findall(r'^ *# *include "([^"]+)"', file.read_text(), re.M):
             waiting += [folder / name for folder in (file.parent, *map(ROOT.joinpath, FOLDERS)) if (folder / name).is_file()][:1]
     return {file.relative_to(ROOT) for file in seen}

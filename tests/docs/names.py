@@ -16,8 +16,9 @@ SOURCES = ("*.cpp", "*.h", "*.py", "*.sh", "*.cmake", "CMakeLists.txt")
 def known():
     """The names of the public headers, without their comments, and those that something reads."""
     names = set()
-    for header in re.findall(r"^ist/\S+", (ROOT / "src/package/public_headers.txt").read_text(), re.MULTILINE):
-        names.update(NAME.findall(re.sub(r"(?s)/\*.*?\*/|//[^\n]*", "", (ROOT / "src" / header).read_text())))
+    listed = re.findall(r"^ist/\S+", (ROOT / "src/package/public_headers.txt").read_text(), re.MULTILINE)
+    for header in [*(ROOT / "src" / name for name in listed), *(ROOT / "src").glob("*/include/**/*.h")]:
+        names.update(NAME.findall(re.sub(r"(?s)/\*.*?\*/|//[^\n]*", "", header.read_text())))
     files = [ROOT / "CMakeLists.txt"]
     files += (file for folder in ("src", "tests", "scripts", "bench") for kind in SOURCES for file in (ROOT / folder).rglob(kind))
     for file in files:

@@ -56,7 +56,7 @@ class Snippets(unittest.TestCase):
             (there / "bin/ist").write_text(f"#!/bin/sh\n{ist}")
             (there / "bin/ist").chmod(0o755)
             (there / "lib/pkgconfig").mkdir(parents=True)
-            (there / "lib/pkgconfig/ist.pc").write_text("Name: ist\nDescription: none\nVersion: 0\n")
+            (there / "lib/pkgconfig/ist_loop.pc").write_text("Name: ist_loop\nDescription: none\nVersion: 0\n")
             reader = snippets.Reader("page.md", there, there, "g++")
             reader.read(pages.read(text))
             return reader.counts

@@ -96,7 +96,7 @@ class Reader:
 
     def __init__(self, name, folder, prefix, compiler):
         self.name, self.folder, self.prefix, self.compiler = name, folder, prefix, compiler
-        libraries = next(prefix.rglob("pkgconfig/ist.pc")).parent.parent
+        libraries = next(prefix.rglob("pkgconfig/ist_loop.pc")).parent.parent
         self.environment = dict(os.environ, PATH=f"{prefix}/bin:{os.environ['PATH']}", LD_LIBRARY_PATH=str(libraries),
                                 PKG_CONFIG_PATH=str(libraries / "pkgconfig"), PYTHONPATH=str(PACKAGE), IST_PAGE=str(VIEW),
                                 IST_LIBRARY=str(libraries / "libist_loop.so"), MPLBACKEND="Agg", PYTHONDONTWRITEBYTECODE="1")
