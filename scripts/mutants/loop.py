@@ -6,6 +6,7 @@ MEASURE = "src/ist/measure/"
 QUERY_STATE = "src/ist/query/query_state.cpp"
 CAPI = "src/c/"
 HAPTICS = "src/loop/haptics/"
+RECORDING = "src/loop/include/ist/haptics/recording.h"
 SIMULATION = HAPTICS + "simulation.cpp"
 FRICTION = HAPTICS + "effects/friction_effect.cpp"
 KERNELS = "search_test *Border*:*Advance*"
@@ -55,9 +56,9 @@ MUTANTS = [
     ("encoders-without-steps", "the simulated device reports its exact pose",
      [(HAPTICS + "devices/hand_device.cpp", "if (settings_.resolution > 0) {", "if (settings_.resolution > 1e9) {")], ["haptics_test Hand*"]),
     ("snapshot-torn", "a reader takes a value that is being written",
-     [("src/loop/include/ist/haptics/recording.h", "if (count_.load(std::memory_order_relaxed) != count) return std::nullopt;", "")], ["loop_test Snapshot*"]),
+     [(RECORDING, "if (count_.load(std::memory_order_relaxed) != count) return std::nullopt;", "")], ["loop_test Snapshot*"]),
     ("ring-overwritten", "a full ring takes a record in place of its oldest",
-     [("src/loop/include/ist/haptics/recording.h", "      if (end - begin_seen_ == capacity_) return false;", "")], ["loop_test TickRing*"]),
+     [(RECORDING, "      if (end - begin_seen_ == capacity_) return false;", "")], ["loop_test TickRing*"]),
     ("slept-through-not-missed", "deadlines that pass while the loop sleeps are not counted",
      [(HAPTICS + "tick_clock.cpp", "return {late, missed_ + slept_through};", "return {late, missed_ + 0 * slept_through};")],
      ["haptics_test TickSchedule*"]),
