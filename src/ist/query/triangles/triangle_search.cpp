@@ -291,9 +291,13 @@ TriangleSearch::Nearest TriangleSearch::nearest(const TrianglePose& pose, double
                                                 const Budget& budget,
                                                 DistanceInterval& distance) noexcept {
   const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
+  const auto closest = [&](TriangleIds ids) {
+    return closest_points(corners_of(meshes.fixed, ids.fixed), meshes.moving[ids.moving],
+                          {ids.fixed, ids.moving});
+  };
   if (still_meet(meshes, budget)) {
     distance = {0, 0};
-    return {{true, 1}, 0};
+    return {{true, 1}, 0, closest(*met_)};
   }
   search_.begin(cluster_pose(pose));
   NearestPair nearest({search_.step(), kernels_, meshes, memory_, budget}, tolerance, longest_edge_,
@@ -320,7 +324,25 @@ TriangleSearch::Nearest TriangleSearch::nearest(const TrianglePose& pose, double
   if (!complete) lower = std::min(lower, search_.nearest_left());
   const double upper = nearest.ids() ? nearest.distance() + error : distance.upper;
   distance = {std::max(distance.lower, lower), std::min(distance.upper, upper)};
-  return {{complete, meter.spent() - kRootTests}, error};
+  std::optional<NearPair> pair;
+  if (nearest.ids()) pair = closest(*nearest.ids());
+  return {{complete, meter.spent() - kRootTests}, error, pair};
+}
+
+TriangleSearch::End TriangleSearch::near(const TrianglePose& pose, double enough,
+                                         const Budget& budget, NearList& list) noexcept {
+  const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
+  search_.begin(cluster_pose(pose));
+  // No two points are farther apart: a float holds it.
+  const double farthest = 2 * (radii() + pose.relative.translation.cwiseAbs().maxCoeff());
+  NearbyPairs near(NearDecision({search_.step(), kernels_, meshes, memory_, budget},
+                                *moving_.triangles(), plain_move(pose.rigid),
+                                std::min(enough, farthest), list));
+  BudgetMeter meter(budget, kRootTests);
+  bool complete = search_.run(meter, near);
+  complete = near.finish() && complete;
+  list.finish();
+  return {complete, meter.spent() - kRootTests};
 }
 
 // Returns whether the triangles that met last still do. A limit of tests does not ask.

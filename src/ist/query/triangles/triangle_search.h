@@ -7,6 +7,7 @@
 
 #include "ist/query/relative_pose.h"
 #include "ist/query/triangles/cluster_search.h"
+#include "ist/query/triangles/near_visitor.h"
 #include "ist/query/triangles/pair_list.h"
 #include "ist/query/triangles/shared_pairs.h"
 #include "ist/query/triangles/triangle_visitors.h"
@@ -48,7 +49,8 @@ class TriangleSearch {
     bool found;
   };
   struct Nearest : End {
-    double error;  ///< of a distance of triangles, mesh units
+    double error;                  ///< of a distance of triangles, mesh units
+    std::optional<NearPair> pair;  ///< the nearest that was found
   };
 
   /// Finds all pairs of triangles that intersect; the first of them go into `out`. pair_count()
@@ -65,6 +67,14 @@ class TriangleSearch {
   /// @param distance bounds it already; narrowed
   Nearest nearest(const TrianglePose& pose, double tolerance, const Budget& budget,
                   DistanceInterval& distance) noexcept;
+
+  /// Lists all pairs of triangles no farther apart than `enough` in double, and no others.
+  End near(const TrianglePose& pose, double enough, const Budget& budget, NearList& list) noexcept;
+  /// Returns the most by which the distance of two triangles that are no farther apart than
+  /// `margin` is wrong in double, mesh units.
+  [[nodiscard]] double distance_error(double margin) const noexcept {
+    return kTriangleDistanceError * (longest_edge_ + margin);
+  }
 
   void forget() noexcept {
     met_.reset();
