@@ -170,16 +170,16 @@ std::size_t near_parts(const TriangleCorners& a, const TriangleCorners& b, Trian
   const auto add = [&](std::size_t parts) {
     const NearPair pair = points_of(of_a, of_b, triangles, parts);
     if (!(pair.distance <= enough)) return;
-    std::size_t at = count;
-    for (std::size_t k = 0; k < count; ++k) {
-      if (out[k].fixed_part == pair.fixed_part && out[k].moving_part == pair.moving_part) return;
-      if (at == count && pair.distance < out[k].distance) at = k;
-    }
-    std::move_backward(out.begin() + static_cast<std::ptrdiff_t>(at),
-                       out.begin() + static_cast<std::ptrdiff_t>(count),
-                       out.begin() + static_cast<std::ptrdiff_t>(count + 1));
-    out[at] = pair;
-    ++count;
+    const auto end = out.begin() + static_cast<std::ptrdiff_t>(count);
+    // Corners are found by several edges, with roundings of their own.
+    const auto same = std::find_if(out.begin(), end, [&](const NearPair& other) {
+      return other.fixed_part == pair.fixed_part && other.moving_part == pair.moving_part;
+    });
+    if (same != end && !(pair.distance < same->distance)) return;
+    if (same == end) ++count;
+    auto at = same;  // the pair goes there, or before
+    for (; at != out.begin() && pair.distance < (at - 1)->distance; --at) *at = *(at - 1);
+    *at = pair;
   };
   for (std::size_t k = 0; k < 6; ++k) {
     const ClosestTry tried = k < Parts::kFaceToCorner ? try_face(of_a.corner[k], of_b)
