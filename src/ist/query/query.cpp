@@ -254,10 +254,11 @@ NearPairsResult Query::near_pairs(const Eigen::Isometry3d& pose, double margin,
   }
   NearList list;
   list.begin(out);
-  const TriangleSearch::End end =
+  const TriangleSearch::Near end =
       s.triangles->near({*project_to_rigid(pose), bodies->relative}, margin + error, budget, list);
   result.sphere_tests += end.tests;
   result.complete = end.complete;
+  result.found = end.kept ? Found::kKept : Found::kFresh;
   result.near_pairs = list.count();
   result.truncated = result.near_pairs > out.size();
   return result;

@@ -29,6 +29,10 @@ CacheOptions coherent_options(const QueryOptions& options) {
   return {options.frontier_pairs, options.front_pairs, options.workers, options.period};
 }
 
+TriangleOptions triangle_options(const QueryOptions& options) {
+  return {options.workers, options.period, options.near_pairs};
+}
+
 // Returns the bytes that a query with such a plan reserves. Throws kArgumentInvalid for an option
 // out of range.
 std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const SphereTree& moving,
@@ -37,10 +41,11 @@ std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const Sp
     throw Error(ErrorCode::kArgumentInvalid,
                 fmt::format("query option workers is {}: give 1 or 2", options.workers));
   }
-  if (options.front_pairs > kMostItems) {
+  for (const auto& [name, pairs] :
+       {std::pair{"front_pairs", options.front_pairs}, {"near_pairs", options.near_pairs}}) {
+    if (pairs <= kMostItems) continue;
     throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("query option front_pairs is {}: {} is the most", options.front_pairs,
-                            kMostItems));
+                fmt::format("query option {} is {}: {} is the most", name, pairs, kMostItems));
   }
   std::size_t bytes = (options.workers == 2 ? SharedSearch::bytes_for(plan, options.frontier_pairs)
                                             : Search::bytes_for(plan, options.frontier_pairs)) +
@@ -49,7 +54,7 @@ std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const Sp
     bytes += CachedSearch::bytes_for(plan, coherent_options(options));
   }
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    bytes += TriangleSearch::bytes_for(fixed, moving, options.workers);
+    bytes += TriangleSearch::bytes_for(fixed, moving, triangle_options(options));
   }
   return bytes;
 }
@@ -90,7 +95,7 @@ QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tr
   }
   window.resize(kWindow + kLeafPairSpare);
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    triangles.emplace(fixed, moving, kernels, WorkerOptions{options.workers, options.period});
+    triangles.emplace(fixed, moving, kernels, triangle_options(options));
   }
 }
 

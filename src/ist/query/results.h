@@ -82,7 +82,7 @@ enum class QueryStatus : std::uint8_t {
 /// How a query found its answer. The answer does not depend on it.
 enum class Found : std::uint8_t {
   kFresh,  ///< by a search at this pose
-  kKept,   ///< among the leaf pairs that were kept from earlier poses
+  kKept,   ///< among the pairs that were kept from earlier poses
   kClear,  ///< without a look: by the bounds of the roots, or a clearance found at an earlier pose
 };
 

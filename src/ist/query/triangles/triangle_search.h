@@ -7,6 +7,7 @@
 
 #include "ist/query/relative_pose.h"
 #include "ist/query/triangles/cluster_search.h"
+#include "ist/query/triangles/near_cache.h"
 #include "ist/query/triangles/near_visitor.h"
 #include "ist/query/triangles/pair_list.h"
 #include "ist/query/triangles/shared_pairs.h"
@@ -16,9 +17,10 @@
 
 namespace ist {
 
-struct WorkerOptions {
+struct TriangleOptions {
   int workers;                      ///< 1 or 2
   std::chrono::nanoseconds period;  ///< as for ResidentWorker::tick
+  std::size_t near_pairs = 0;       ///< room of a NearCache; 0: there is none
 };
 
 /// Two bodies at a pose, for exact questions.
@@ -38,7 +40,7 @@ class TriangleSearch {
  public:
   /// Reserves all memory. Both trees must have triangles. Holds references to both.
   TriangleSearch(const SphereTree& fixed, const SphereTree& moving, const Kernels& kernels,
-                 const WorkerOptions& options);
+                 const TriangleOptions& options);
 
   /// The end of a search, and its cost.
   struct End {
@@ -68,8 +70,11 @@ class TriangleSearch {
   Nearest nearest(const TrianglePose& pose, double tolerance, const Budget& budget,
                   DistanceInterval& distance) noexcept;
 
+  struct Near : End {
+    bool kept;  ///< a list from earlier poses answered
+  };
   /// Lists all pairs of triangles no farther apart than `enough` in double, and no others.
-  End near(const TrianglePose& pose, double enough, const Budget& budget, NearList& list) noexcept;
+  Near near(const TrianglePose& pose, double enough, const Budget& budget, NearList& list) noexcept;
   /// Returns the most by which the distance of two triangles that are no farther apart than
   /// `margin` is wrong in double, mesh units.
   [[nodiscard]] double distance_error(double margin) const noexcept {
@@ -79,6 +84,7 @@ class TriangleSearch {
   void forget() noexcept {
     met_.reset();
     nearest_.reset();
+    if (near_) near_->forget();
   }
 
   /// Returns whether the bodies are so far apart, against their sizes, that float cannot tell their
@@ -93,7 +99,7 @@ class TriangleSearch {
   }
   /// Returns the bytes that a search of these trees reserves, with one worker or two.
   [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed, const SphereTree& moving,
-                                             int workers) noexcept;
+                                             const TriangleOptions& options) noexcept;
 
  private:
   struct Witness {
@@ -104,7 +110,9 @@ class TriangleSearch {
     return fixed_.bounding_radius() + moving_.bounding_radius();
   }
   [[nodiscard]] ClusterPose cluster_pose(const TrianglePose& pose) const noexcept;
+  [[nodiscard]] ClusterPose cluster_pose(const Eigen::Isometry3d& rigid) const noexcept;
   [[nodiscard]] bool still_meet(const Meshes& meshes, const Budget& budget) const noexcept;
+  void prepare_near(const NearCache::Need& need, std::uint64_t tests) noexcept;
   template <class Visitor>
   void begin_nearest(BudgetMeter& meter, Visitor& nearest) noexcept;
 
@@ -116,6 +124,7 @@ class TriangleSearch {
   PairList list_;
   FoundMemory memory_;
   std::optional<SharedPairs> shared_;
+  std::optional<NearCache> near_;
   std::optional<TriangleIds> met_;
   std::optional<Witness> nearest_;
 };
