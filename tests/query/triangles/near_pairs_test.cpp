@@ -25,7 +25,7 @@ namespace {
 using Vector = Eigen::Vector3d;
 
 // Coordinates of the tests are no larger than this.
-constexpr double kRounding = 1e-12;
+constexpr double kNearRounding = 1e-12;
 
 TriangleCorners corners(const TriangleMesh& mesh, std::uint32_t triangle) {
   const Triangle& t = mesh.triangles[triangle];
@@ -125,7 +125,7 @@ TEST(ClosestPoints, OfAnEdgeThroughAFace) {
   const TriangleCorners pin{Vector(0.25, 0.5, -5), Vector(0.25, 0.5, 5), Vector(8, 8, 7)};
   const NearPair pair = closest_points(face, pin, {0, 0});
   EXPECT_EQ(pair.distance, 0);
-  EXPECT_LE((pair.fixed_point - Vector(0.25, 0.5, 0)).norm(), kRounding);
+  EXPECT_LE((pair.fixed_point - Vector(0.25, 0.5, 0)).norm(), kNearRounding);
   EXPECT_EQ(pair.fixed_part, TrianglePart::kFace);
   EXPECT_EQ(pair.moving_part, TrianglePart::kEdge0);
 }
@@ -151,20 +151,20 @@ std::size_t expect_all(const SphereTree& fixed, const SphereTree& moving,
     for (const NearPair& pair : pairs) {
       EXPECT_TRUE(listed.insert(pair.triangles).second);
       expect_points(pair, corners(a, pair.triangles.fixed), corners(b, pair.triangles.moving, pose),
-                    result.pad + kRounding);
+                    result.pad + kNearRounding);
     }
     for (std::uint32_t i = 0; i < a.triangles.size(); ++i) {
       const plain::Corners of_fixed(corners(a, i));
       for (std::uint32_t j = 0; j < b.triangles.size(); ++j) {
         const plain::Corners of_moving(corners(b, j, pose));
-        const double far = margin + result.pad + kRounding;
+        const double far = margin + result.pad + kNearRounding;
         if (of_fixed.box.squaredExteriorDistance(of_moving.box) > far * far) {
           EXPECT_FALSE(listed.contains({i, j}));
           continue;
         }
         const double distance =
             plain::meet(of_fixed, of_moving) ? 0 : plain::distance(of_fixed, of_moving);
-        if (distance < margin - kRounding) {
+        if (distance < margin - kNearRounding) {
           EXPECT_TRUE(listed.contains({i, j})) << distance;
         }
         if (distance > far) {
@@ -345,7 +345,7 @@ TEST(NearParts, OfRandomTriangles) {
         EXPECT_GE(out[k].distance, out[k - 1].distance);
       }
       expect_points(out[k], corners(*fixed.triangles(), 0), corners(*moving.triangles(), 0, pose),
-                    found.pad + kRounding);
+                    found.pad + kNearRounding);
     }
     if (found.near_pairs > 0) {
       EXPECT_EQ(out[0].distance, nearest.distance);
@@ -372,7 +372,7 @@ TEST(QueryDistance, TellsItsPoints) {
       EXPECT_GE(found.distance.upper, pair.distance);
       expect_points(pair, corners(*fixed.triangles(), pair.triangles.fixed),
                     corners(*moving.triangles(), pair.triangles.moving, pose),
-                    found.narrowest + kRounding);
+                    found.narrowest + kNearRounding);
     }
   }
 }
