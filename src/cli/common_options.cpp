@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "answers/refusals.h"
+#include "ist/base/files.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist::cli {
@@ -52,6 +53,12 @@ void refuse_to_overwrite(const std::filesystem::path& output,
     refuse_if(!output.empty() && std::filesystem::equivalent(output, input, neither),
               output.string(), "writing it would destroy an input: name another file");
   }
+}
+
+void check_output(const std::filesystem::path& output,
+                  std::initializer_list<std::filesystem::path> inputs) {
+  refuse_to_overwrite(output, inputs);
+  if (!output.empty()) require_writable(output);
 }
 
 CLI::Validator whole_number(const std::string& what) {

@@ -30,6 +30,11 @@ void add_max_memory(CLI::App& command, std::uint64_t& bytes,
 void refuse_to_overwrite(const std::filesystem::path& output,
                          std::initializer_list<std::filesystem::path> inputs);
 
+/// Checks an output before long work: throws what refuse_to_overwrite() and require_writable()
+/// throw. An empty name is no output.
+void check_output(const std::filesystem::path& output,
+                  std::initializer_list<std::filesystem::path> inputs);
+
 /// Accepts only the decimal digits of a number below 2^64, which `what` names. CLI11 would read -1
 /// and too large numbers as the largest one, and 010 as 8.
 [[nodiscard]] CLI::Validator whole_number(const std::string& what);

@@ -94,6 +94,28 @@ TEST_F(Files, WhatCannotBeWrittenIsAFailure) {
   EXPECT_TRUE(says(result.err, "none/out.ply: "));
 }
 
+// A mesh that cannot be read shows that the output is checked first.
+TEST_F(Files, WhatCannotBeWrittenIsFoundBeforeTheWork) {
+  const std::string bad = write("bad.stl", "solid");
+  for (const std::string& folder : {path("none/"), path("bad.stl/")}) {
+    const std::vector<std::pair<std::vector<std::string>, std::string>> commands = {
+        {{"build", bad, "-o"}, "out.ist"},
+        {{"export", bad, "--what", "voxels", "--level", "0", "-o"}, "out.ply"},
+        {{"occlusion", bad, bad, "-o"}, "out.vtp"},
+        {{"collide", bad, bad, "--contacts"}, "out.csv"},
+        {{"approach", bad, bad, "--axis", "z", "--from", "0", "--to", "1", "--contacts"},
+         "out.csv"},
+        {{"run", bad, "--record"}, "out.csv"}};
+    for (auto [words, name] : commands) {
+      words.push_back(folder + name);
+      const CommandResult result = ist(words);
+      EXPECT_EQ(result.exit_code, 1) << words[0];
+      EXPECT_TRUE(result.err.starts_with("ist: " + folder + name + ": cannot create the file: "))
+          << result.err;
+    }
+  }
+}
+
 TEST_F(Files, InfoOfAMesh) {
   const auto lines = json_lines(ist_well({"info", ball(), "--json"}).out);
   ASSERT_EQ(lines.size(), 1u);

@@ -54,7 +54,7 @@ void run(BuildArguments options) {
   refuse_if(!names("surface"), "--classes",
             "surface voxels are always made: give surface,proximity");
   options.build.proximity = names("proximity");
-  refuse_to_overwrite(options.output, {options.mesh});
+  check_output(options.output, {options.mesh});
   options.build.source = source_of(options.mesh);
   options.build.source.unit = length_unit(options.unit).value_or(LengthUnit::kUnknown);
   options.build.keep_triangles = !options.no_triangles;

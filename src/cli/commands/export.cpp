@@ -84,7 +84,7 @@ void run(const ExportArguments& options) {
   const FileFormat format = format_of(options);
   refuse_if(options.unit && format != FileFormat::kGlb, "--unit",
             "goes with a .glb, which is in metres; .vtp and .ply keep the mesh's unit");
-  refuse_to_overwrite(options.output, {options.tree});
+  check_output(options.output, {options.tree});
   const SphereTree tree = read_tree(options.tree);
   refuse_if(options.level > tree.depth(), "--level",
             fmt::format("the tree has levels 0 to {}", tree.depth()));

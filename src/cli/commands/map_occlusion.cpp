@@ -121,9 +121,9 @@ std::vector<Output> outputs_of(const OcclusionArguments& options) {
   bool surface = false, open = false, table = false;
   for (const std::filesystem::path& file : options.outputs) {
     const FileFormat format = format_by_ending("-o", file, kWritable);
-    refuse_to_overwrite(file, {options.files.fixed, options.files.moving, options.pose.matrix,
-                               label_source(options.questions.labels_fixed).file,
-                               label_source(options.questions.labels_moving).file});
+    check_output(file, {options.files.fixed, options.files.moving, options.pose.matrix,
+                        label_source(options.questions.labels_fixed).file,
+                        label_source(options.questions.labels_moving).file});
     refuse_if(!names.insert(plain(file)).second, "-o",
               fmt::format("{} is named twice", file.string()));
     open = open || format == FileFormat::kPly || format == FileFormat::kGlb;

@@ -95,7 +95,7 @@ void run(const RunArguments& options) {
   // NaN passes every range check.
   refuse_if(options.rate && std::isnan(*options.rate), "--rate", "give a number");
   refuse_if(options.seconds && std::isnan(*options.seconds), "--seconds", "give a number");
-  refuse_to_overwrite(options.record, {options.scene, options.replay});
+  check_output(options.record, {options.scene, options.replay});
   Scene scene = read_scene(options.scene);
   for (const auto* bodies : {&scene.fixed, &scene.held}) {
     for (const SceneBody& body : *bodies) {
