@@ -208,11 +208,12 @@ double default_voxel_size(double extent, const std::string& of) {
 
 SphereTree build_with_progress(const std::string& name, TriangleMesh mesh,
                                const BuildOptions& options, std::vector<std::string>& warnings,
-                               BuildReport* report) {
-  ProgressBar progress;
+                               BuildReport* report, Progress* progress) {
+  std::optional<ProgressBar> bar;
+  if (progress == nullptr) progress = &bar.emplace();
   BuildReport own;
   BuildReport& filled = report != nullptr ? *report : own;
-  SphereTree tree = build_tree(std::move(mesh), options, &filled, &progress);
+  SphereTree tree = build_tree(std::move(mesh), options, &filled, progress);
   if (filled.turned_components > 0) {
     warnings.push_back(fmt::format("{}: {} closed component{} inside out: turned outward", name,
                                    filled.turned_components,
