@@ -134,6 +134,7 @@ int tell_usage(const CLI::App& app, const std::string& wrong, int argc, char** a
 }
 
 int run(int argc, char** argv) {
+  if (argc > 0) set_command_word(argv[0]);
   install_signal_handlers();
   const std::unique_ptr<CLI::App> app = make_app();
   std::vector<std::string> words = words_of(argc, argv);

@@ -311,7 +311,7 @@ TEST_F(Files, DemoMakesItsJawsAndClosesThem) {
   const CommandResult table = ist_well({"demo", "--voxel-size", "3"});
   EXPECT_TRUE(says(table.out, "published"));
   EXPECT_TRUE(says(table.out, "Their bite at dz = -0.6 mm:\ntouch yes, 0.407 to 0.419 mm deep"));
-  EXPECT_TRUE(says(table.out, "Try next: ist demo --keep"));
+  EXPECT_TRUE(says(table.out, std::string("Try next: ") + IST_COMMAND + " demo --keep"));
   EXPECT_EQ(std::count(table.out.begin(), table.out.end(), '|'), 8);  // a row each, and its legend
 
   // What it keeps are meshes for the other subcommands.
