@@ -13,6 +13,10 @@ namespace ist::cli {
 /// Returns the values of --spheres.
 [[nodiscard]] std::vector<std::string> policy_names();
 
+/// Returns `why`, and after it the known word that is spelled most like `word`, if one is near.
+[[nodiscard]] std::string with_nearest(const std::string& why, const std::string& word,
+                                       const std::vector<std::string>& known);
+
 /// Accepts one of `words` in any case, and takes their spelling. For Option::transform().
 [[nodiscard]] CLI::Validator one_of(const std::vector<std::string>& words);
 
