@@ -16,6 +16,7 @@
 #include "answers/refusals.h"
 #include "cli/common_options.h"
 #include "cli/progress_bar.h"
+#include "ist/base/counted.h"
 #include "ist/base/error.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/mesh_source.h"
@@ -215,9 +216,9 @@ SphereTree build_with_progress(const std::string& name, TriangleMesh mesh,
   BuildReport& filled = report != nullptr ? *report : own;
   SphereTree tree = build_tree(std::move(mesh), options, &filled, progress);
   if (filled.turned_components > 0) {
-    warnings.push_back(fmt::format("{}: {} closed component{} inside out: turned outward", name,
-                                   filled.turned_components,
-                                   filled.turned_components == 1 ? " was" : "s were"));
+    warnings.push_back(fmt::format(
+        "{}: {} inside out: turned outward", name,
+        counted(filled.turned_components, "closed component was", "closed components were")));
   }
   return tree;
 }

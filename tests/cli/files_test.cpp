@@ -134,6 +134,7 @@ TEST_F(Files, InfoOfAMesh) {
   }
   EXPECT_EQ(line["warnings"], json::array());
   EXPECT_TRUE(says(ist_well({"info", ball()}).out, "320 triangles and 162 vertices"));
+  EXPECT_TRUE(says(ist_well({"info", mesh("one.stl", open_strip(1))}).out, ", 1 component\n"));
   const auto open = json_lines(ist_well({"info", mesh("open.stl", open_strip(2)), "--json"}).out);
   EXPECT_EQ(open.at(0)["boundary_edges"], 6);
   EXPECT_GT(open.at(0)["warnings"].size(), 0u);

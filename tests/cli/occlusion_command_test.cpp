@@ -284,7 +284,7 @@ TEST_F(OcclusionCommand, LabelsAreReadBeforeAnythingIsMeasured) {
   const CommandResult result = ist({"occlusion", lower, upper, "--labels-moving",
                                     write("labels.txt", "36\n"), "--numbering", "fdi", "--json"});
   EXPECT_EQ(result.exit_code, 3);
-  EXPECT_TRUE(says(result.err, "labels.txt: 1 labels for a mesh of 12 triangles"));
+  EXPECT_TRUE(says(result.err, "labels.txt: 1 label for a mesh of 12 triangles"));
 }
 
 TEST_F(OcclusionCommand, AnOpenBodyAndAFarOneAreSaid) {

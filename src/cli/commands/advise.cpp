@@ -22,6 +22,7 @@
 #include "cli/poses/pose_options.h"
 #include "cli/progress_bar.h"
 #include "cli/terminal.h"
+#include "ist/base/counted.h"
 #include "ist/base/error.h"
 #include "ist/mesh/bounding_box.h"
 #include "ist/tree/sphere_tree.h"
@@ -106,7 +107,7 @@ void run(const AdviseArguments& options) {
   std::vector<Eigen::Isometry3d> poses;
   if (!options.poses.empty()) {
     poses = read_poses(options.poses);
-    fmt::print(stderr, "{} poses from {}\n", poses.size(), options.poses.string());
+    fmt::print(stderr, "{} from {}\n", counted(poses.size(), "pose"), options.poses.string());
   }
   CheckedMesh fixed_mesh = load(options.fixed), moving_mesh = load(options.moving);
   const auto refuse_other = [&](const char* what, auto of_fixed, auto of_moving) {

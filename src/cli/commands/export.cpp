@@ -18,6 +18,7 @@
 #include "cli/common_options.h"
 #include "cli/progress_bar.h"
 #include "cli/terminal.h"
+#include "ist/base/counted.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 
@@ -111,7 +112,8 @@ void run(const ExportArguments& options) {
                                       {"count", count}};
     print_json(line);
   } else {
-    fmt::print("{}: {} {}\n", options.output.string(), count, options.what);
+    const char* one = options.what == "voxels" ? "voxel" : "sphere";
+    fmt::print("{}: {}\n", options.output.string(), counted(count, one));
   }
 }
 
