@@ -94,6 +94,9 @@ void print_contacts(const Bite& bite) {
   if (bite.contacts.size() > kMost) {
     fmt::print("… and {} more: -o bite.csv holds them all\n", bite.contacts.size() - kMost);
   }
+  const bool all_on_both = std::all_of(bite.contacts.begin(), bite.contacts.end(),
+                                       [](const BiteContact& each) { return each.on_both(); });
+  if (!all_on_both) fmt::print("share: {}\n", kSharesOnOneBody);
 }
 
 }  // namespace ist::cli
