@@ -121,9 +121,7 @@ void run(const ExportArguments& options) {
 
 void add_export(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "export",
-      "Write a level of a tree for viewers: .vtp for ParaView, .ply for MeshLab and CloudCompare, "
-      ".glb for Blender and browsers");
+      "export", "Write a level of a tree for viewers: " + endings_with_programs(kSurfaceFormats));
   const auto options = std::make_shared<ExportArguments>();
   command->add_option("TREE", options->tree, "tree file")->type_name("FILE")->required();
   command
@@ -138,8 +136,10 @@ void add_export(CLI::App& app) {
                    "spheres to write, of slab the balls; by default the tightest that the tree has")
       ->transform(one_of(policy_names()));
   command
-      ->add_option("-o,--output", options->output,
-                   "file to write; its ending says the format: .vtp or .ply, of voxels also .glb")
+      ->add_option(
+          "-o,--output", options->output,
+          fmt::format("file to write, by its ending: of voxels {}; of spheres {}",
+                      endings_with_programs(kSurfaceFormats), endings_with_programs(kPointFormats)))
       ->type_name("FILE")
       ->required();
   command

@@ -321,10 +321,10 @@ void add_occlusion(CLI::App& app) {
   command
       ->add_option(
           "-o,--output", options->outputs,
-          "file to write, by its ending: .vtp (ParaView, Slicer), .ply (MeshLab, "
-          "Blender), .glb (browsers), .csv (Excel, R), .json, .html (the interactive page if "
-          "it is installed, else a static report), .report.html (the report always); "
-          "may be given again; without it only text is printed")
+          fmt::format("file to write, by its ending: {}; .html is the interactive page if it is "
+                      "installed, else a static report, .report.html is the report always; may be "
+                      "given again; without it only text is printed",
+                      endings_with_programs(kWritable)))
       ->type_name("FILE");
   add_measure_options(*command, *options);
   command->add_option("--side", options->side, "write this body alone, to .vtp, .ply and .glb")
