@@ -165,6 +165,8 @@ std::unique_ptr<ContactFile> open_contact_file(const std::filesystem::path& file
 
 }  // namespace
 
+std::string contact_endings() { return endings_with_programs(kContactFormats); }
+
 void check_contact_file(const std::filesystem::path& file) {
   static_cast<void>(format_by_ending("--contacts", file, kContactFormats));
 }

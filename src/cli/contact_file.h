@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "answers/bodies.h"
@@ -13,6 +14,9 @@
 #include "ist/tree/bounds.h"
 
 namespace ist::cli {
+
+/// Returns the endings of contact files with the programs that open them.
+[[nodiscard]] std::string contact_endings();
 
 /// Throws a Refusal if the name of the file has no ending of a contact file.
 void check_contact_file(const std::filesystem::path& file);

@@ -16,6 +16,7 @@
 #include "answers/refusals.h"
 #include "cli/common_options.h"
 #include "cli/progress_bar.h"
+#include "ist/base/counted.h"
 #include "ist/base/error.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/mesh_source.h"
@@ -208,15 +209,16 @@ double default_voxel_size(double extent, const std::string& of) {
 
 SphereTree build_with_progress(const std::string& name, TriangleMesh mesh,
                                const BuildOptions& options, std::vector<std::string>& warnings,
-                               BuildReport* report) {
-  ProgressBar progress;
+                               BuildReport* report, Progress* progress) {
+  std::optional<ProgressBar> bar;
+  if (progress == nullptr) progress = &bar.emplace();
   BuildReport own;
   BuildReport& filled = report != nullptr ? *report : own;
-  SphereTree tree = build_tree(std::move(mesh), options, &filled, &progress);
+  SphereTree tree = build_tree(std::move(mesh), options, &filled, progress);
   if (filled.turned_components > 0) {
-    warnings.push_back(fmt::format("{}: {} closed component{} inside out: turned outward", name,
-                                   filled.turned_components,
-                                   filled.turned_components == 1 ? " was" : "s were"));
+    warnings.push_back(fmt::format(
+        "{}: {} inside out: turned outward", name,
+        counted(filled.turned_components, "closed component was", "closed components were")));
   }
   return tree;
 }

@@ -128,11 +128,10 @@ void add_query_options(CLI::App& command, QuestionOptions& options) {
   command.add_flag("--exact", options.questions.triangle_pairs,
                    "count all pairs of triangles that meet");
   command
-      .add_option(
-          "--contacts", options.contacts,
-          "write leaf pairs, and the contact points that they are reduced to, at most "
-          "32 a pose, in fixed coordinates, to this file, by its ending: .jsonl, .csv, .vtp "
-          "or .ply")
+      .add_option("--contacts", options.contacts,
+                  "write leaf pairs, and the contact points that they are reduced to, at most "
+                  "32 a pose, in fixed coordinates, to this file, by its ending: " +
+                      contact_endings())
       ->type_name("FILE");
   command.add_flag(
       "--fail-if-touching", options.fail_if_touching,

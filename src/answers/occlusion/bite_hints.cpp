@@ -214,11 +214,16 @@ std::string region_words(const Bite& bite) {
       box_words(*bite.region));
 }
 
+std::vector<std::string> remarks_of(const Bite& bite) {
+  std::vector<std::string> remarks;
+  if (bite.warning) remarks.push_back(*bite.warning);
+  if (bite.region) remarks.push_back(region_words(bite));
+  if (bite.hint) remarks.push_back("hint: " + *bite.hint);
+  return remarks;
+}
+
 std::vector<std::string> notes_of(const Bite& bite) {
-  std::vector<std::string> notes;
-  if (bite.warning) notes.push_back(*bite.warning);
-  if (bite.region) notes.push_back(region_words(bite));
-  if (bite.hint) notes.push_back("hint: " + *bite.hint);
+  std::vector<std::string> notes = remarks_of(bite);
   notes.insert(notes.end(), bite.checks.begin(), bite.checks.end());
   return notes;
 }

@@ -22,6 +22,7 @@
 #include "cli/poses/pose_options.h"
 #include "cli/progress_bar.h"
 #include "cli/terminal.h"
+#include "ist/base/counted.h"
 #include "ist/base/error.h"
 #include "ist/mesh/bounding_box.h"
 #include "ist/tree/sphere_tree.h"
@@ -89,14 +90,15 @@ double coarsest_for(const TriangleMesh& fixed, const TriangleMesh& moving,
 }
 
 // Builds a tree of one voxel for exact queries, which do without voxels.
-SphereTree load_exact(const std::filesystem::path& file, CheckedMesh checked,
-                      std::uint64_t max_memory) {
+SphereTree build_exact(const std::filesystem::path& file, TriangleMesh mesh,
+                       std::uint64_t max_memory, std::vector<std::string>& warnings,
+                       ProgressBar& bar) {
   BuildOptions build;
-  build.voxel_size = extent_of(checked.mesh);
+  build.voxel_size = extent_of(mesh);
   build.max_memory = max_memory;
   SphereTree tree =
-      build_with_progress(file.string(), std::move(checked.mesh), build, checked.warnings);
-  print_warnings(checked.warnings);
+      build_with_progress(file.string(), std::move(mesh), build, warnings, nullptr, &bar);
+  bar.end_part();
   return tree;
 }
 
@@ -105,7 +107,7 @@ void run(const AdviseArguments& options) {
   std::vector<Eigen::Isometry3d> poses;
   if (!options.poses.empty()) {
     poses = read_poses(options.poses);
-    fmt::print(stderr, "{} poses from {}\n", poses.size(), options.poses.string());
+    fmt::print(stderr, "{} from {}\n", counted(poses.size(), "pose"), options.poses.string());
   }
   CheckedMesh fixed_mesh = load(options.fixed), moving_mesh = load(options.moving);
   const auto refuse_other = [&](const char* what, auto of_fixed, auto of_moving) {
@@ -117,32 +119,40 @@ void run(const AdviseArguments& options) {
   refuse_other("unit", fixed_mesh.mesh.unit, moving_mesh.mesh.unit);
   const double coarsest = coarsest_for(fixed_mesh.mesh, moving_mesh.mesh, options);
   const std::uint64_t max_memory = options.measure.max_memory;
-  const SphereTree fixed = load_exact(options.fixed, std::move(fixed_mesh), max_memory);
-  const SphereTree moving = load_exact(options.moving, std::move(moving_mesh), max_memory);
+  for (const CheckedMesh* mesh : {&fixed_mesh, &moving_mesh}) print_warnings(mesh->warnings);
+  std::vector<std::string> turned;  // said when the bar is gone
+  constexpr unsigned kBuilds = 2, kWay = 1;
+  std::optional<ProgressBar> bar(std::in_place, kBuilds + kWay + kMostSizes);
+  const SphereTree fixed =
+      build_exact(options.fixed, std::move(fixed_mesh.mesh), max_memory, turned, *bar);
+  const SphereTree moving =
+      build_exact(options.moving, std::move(moving_mesh.mesh), max_memory, turned, *bar);
   std::optional<ClosingPath> path;
   if (poses.empty()) {
+    bar->begin_stage("looking for the closing path", 0);
     path = find_closing_way(fixed, moving, options.axis);
     poses = path->poses();
   }
+  bar->end_part();
   Query exact(fixed, moving);
 
   const AdviceGoal goal = options.budget
                               ? AdviceGoal{AdviceGoal::Of::kSlowestQuery, kOfGoal * *options.budget}
                               : AdviceGoal{AdviceGoal::Of::kError, kOfGoal * *options.error};
-  const VoxelAdvice advice = [&] {
-    ProgressBar progress;
-    return advise_voxel_size(goal, coarsest, [&](double voxel_size) {
-      const auto measured = measure_size(exact, poses, path, voxel_size, options.measure, progress);
-      // Coarse voxels overlap first, and are tried first.
-      if (options.budget && measured && measured->max_leaf_pairs == 0) {
-        throw Error(ErrorCode::kInputInvalid,
-                    fmt::format("{}: at no pose do voxels of {:g} touch, so no query takes time: "
-                                "add the poses with most contact",
-                                options.poses.string(), voxel_size));
-      }
-      return measured;
-    });
-  }();
+  const VoxelAdvice advice = advise_voxel_size(goal, coarsest, [&](double voxel_size) {
+    const auto measured = measure_size(exact, poses, path, voxel_size, options.measure, *bar);
+    bar->end_part();
+    // Coarse voxels overlap first, and are tried first.
+    if (options.budget && measured && measured->max_leaf_pairs == 0) {
+      throw Error(ErrorCode::kInputInvalid,
+                  fmt::format("{}: at no pose do voxels of {:g} touch, so no query takes time: "
+                              "add the poses with most contact",
+                              options.poses.string(), voxel_size));
+    }
+    return measured;
+  });
+  bar.reset();
+  print_warnings(turned);
   if (options.error && !options.poses.empty() && !advice.measured.empty() &&
       std::all_of(advice.measured.begin(), advice.measured.end(),
                   [](const SizeMeasure& size) { return size.error == 0; })) {

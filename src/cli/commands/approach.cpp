@@ -161,7 +161,7 @@ void tell_first_contact(const Bodies& bodies, const Path& path, const ApproachAr
 void run(const ApproachArguments& options) {
   const QuestionOptions& query = options.query;
   query.check();
-  refuse_to_overwrite(query.contacts, {query.files.fixed, query.files.moving, options.pose.matrix});
+  check_output(query.contacts, {query.files.fixed, query.files.moving, options.pose.matrix});
   const Path path = path_of(options);
   const std::vector<AskedPose> poses = poses_along(path, options.step);
   const Bodies bodies = load_bodies(query.body_files());

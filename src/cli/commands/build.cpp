@@ -14,6 +14,7 @@
 #include "cli/common_options.h"
 #include "cli/load_bodies.h"
 #include "cli/terminal.h"
+#include "ist/base/counted.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
@@ -54,7 +55,7 @@ void run(BuildArguments options) {
   refuse_if(!names("surface"), "--classes",
             "surface voxels are always made: give surface,proximity");
   options.build.proximity = names("proximity");
-  refuse_to_overwrite(options.output, {options.mesh});
+  check_output(options.output, {options.mesh});
   options.build.source = source_of(options.mesh);
   options.build.source.unit = length_unit(options.unit).value_or(LengthUnit::kUnknown);
   options.build.keep_triangles = !options.no_triangles;
@@ -113,9 +114,9 @@ void run(BuildArguments options) {
     print_json(line);
     return;
   }
-  fmt::print("{}: {} voxels, {} nodes, depth {}, {:.1f} MB\n", options.output.string(),
-             octree.leaf_count(), octree.node_count(), octree.depth(),
-             static_cast<double>(bytes) / 1e6);
+  fmt::print("{}: {}, {}, depth {}, {:.1f} MB\n", options.output.string(),
+             counted(octree.leaf_count(), "voxel"), counted(octree.node_count(), "node"),
+             octree.depth(), static_cast<double>(bytes) / 1e6);
   if (parts_of(tree).proximity) {
     fmt::print("proximity voxels: {}\n", parts_of(tree).proximity->octree.leaf_count());
   }

@@ -148,17 +148,18 @@ void print_bite_of(const TriangleMesh& upper, const TriangleMesh& lower,
   Progress unseen;  // a fifth of a second
   print_bite(make_bite(bodies, {}, pose, questions, unseen), {});
   if (keep.empty()) {
-    fmt::print("\nTry next: ist demo --keep .    (writes the two jaws; then it names more)\n");
+    fmt::print("\nTry next: {} demo --keep .    (writes the two jaws; then it names more)\n",
+               command_word());
     return;
   }
   const std::string files =
-      fmt::format("{} {}", (keep / kUpper).string(), (keep / kLower).string());
+      fmt::format("{} {}", quoted((keep / kUpper).string()), quoted((keep / kLower).string()));
   fmt::print(
       "\nWrote {0}. Try next:\n"
-      "  ist occlusion {0} --move 0,0,{1} -o bite.html\n"
-      "  ist collide {0} --move 0,0,-1.5\n"
-      "  ist approach {0} --axis z --from -3 --to 0\n",
-      files, kDown);
+      "  {2} occlusion {0} --move 0,0,{1} -o bite.html\n"
+      "  {2} collide {0} --move 0,0,-1.5\n"
+      "  {2} approach {0} --axis z --from -3 --to 0\n",
+      files, kDown, command_word());
 }
 
 void run(const DemoArguments& options) {

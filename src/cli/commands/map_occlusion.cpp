@@ -121,9 +121,9 @@ std::vector<Output> outputs_of(const OcclusionArguments& options) {
   bool surface = false, open = false, table = false;
   for (const std::filesystem::path& file : options.outputs) {
     const FileFormat format = format_by_ending("-o", file, kWritable);
-    refuse_to_overwrite(file, {options.files.fixed, options.files.moving, options.pose.matrix,
-                               label_source(options.questions.labels_fixed).file,
-                               label_source(options.questions.labels_moving).file});
+    check_output(file, {options.files.fixed, options.files.moving, options.pose.matrix,
+                        label_source(options.questions.labels_fixed).file,
+                        label_source(options.questions.labels_moving).file});
     refuse_if(!names.insert(plain(file)).second, "-o",
               fmt::format("{} is named twice", file.string()));
     open = open || format == FileFormat::kPly || format == FileFormat::kGlb;
@@ -321,10 +321,10 @@ void add_occlusion(CLI::App& app) {
   command
       ->add_option(
           "-o,--output", options->outputs,
-          "file to write, by its ending: .vtp (ParaView, Slicer), .ply (MeshLab, "
-          "Blender), .glb (browsers), .csv (Excel, R), .json, .html (the interactive page if "
-          "it is installed, else a static report), .report.html (the report always); "
-          "may be given again; without it only text is printed")
+          fmt::format("file to write, by its ending: {}; .html is the interactive page if it is "
+                      "installed, else a static report, .report.html is the report always; may be "
+                      "given again; without it only text is printed",
+                      endings_with_programs(kWritable)))
       ->type_name("FILE");
   add_measure_options(*command, *options);
   command->add_option("--side", options->side, "write this body alone, to .vtp, .ply and .glb")

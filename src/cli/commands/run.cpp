@@ -20,6 +20,7 @@
 #include "cli/recordings/tick_lines.h"
 #include "cli/recordings/tick_recorder.h"
 #include "cli/terminal.h"
+#include "ist/base/counted.h"
 #include "ist/base/error.h"
 #include "ist/haptics/servo_loop.h"
 #include "ist/scene.h"
@@ -88,14 +89,14 @@ void replay_ticks(BuiltScene& built, const Scene& scene, const RunArguments& opt
                             options.replay.string()));
   }
   if (run.recorder) run.recorder->complete();
-  fmt::print(stderr, "replayed {} ticks\n", ticks);
+  fmt::print(stderr, "replayed {}\n", counted(ticks, "tick"));
 }
 
 void run(const RunArguments& options) {
   // NaN passes every range check.
   refuse_if(options.rate && std::isnan(*options.rate), "--rate", "give a number");
   refuse_if(options.seconds && std::isnan(*options.seconds), "--seconds", "give a number");
-  refuse_to_overwrite(options.record, {options.scene, options.replay});
+  check_output(options.record, {options.scene, options.replay});
   Scene scene = read_scene(options.scene);
   for (const auto* bodies : {&scene.fixed, &scene.held}) {
     for (const SceneBody& body : *bodies) {
@@ -135,17 +136,18 @@ void run(const RunArguments& options) {
   flush_stdout();  // while a signal still cannot end the process amid the report
   if (report.lost_records > 0) {
     throw std::runtime_error(
-        fmt::format("{} ticks were not recorded: the disk is slower than the loop: record to "
-                    "another disk, or at a lower --rate",
-                    report.lost_records));
+        fmt::format("{} not recorded: the disk is slower than the loop: record to another disk, or "
+                    "at a lower --rate",
+                    counted(report.lost_records, "tick was", "ticks were")));
   }
   if (report.missed > options.allow_missed) {
     throw Failure(
         kDeadlinesMissed,
         fmt::format(
-            "{} deadlines were missed, and {} are allowed: use larger voxels or a lower --rate, or "
-            "allow more with --allow-missed",
-            report.missed, options.allow_missed));
+            "{} missed, and {} allowed: use larger voxels or a lower --rate, or allow more with "
+            "--allow-missed",
+            counted(report.missed, "deadline was", "deadlines were"),
+            counted(options.allow_missed, "is", "are")));
   }
 }
 

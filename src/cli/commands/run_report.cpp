@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cli/terminal.h"
+#include "ist/base/counted.h"
 
 namespace ist::cli {
 namespace {
@@ -109,11 +110,12 @@ void print_report(const ServoReport& report, const Scene& scene, const Simulatio
     return;
   }
   for (const std::string& note : report.notes) fmt::print(stderr, "note: {}\n", note);
-  fmt::print("{} ticks of {:.4g} µs: {} deadlines missed, {} answers incomplete, {} faults\n",
-             report.ticks, 1e6 / scene.rate, report.missed, report.held, report.faults);
+  fmt::print("{} of {:.4g} µs: {} missed, {} incomplete, {}\n", counted(report.ticks, "tick"),
+             1e6 / scene.rate, counted(report.missed, "deadline"), counted(report.held, "answer"),
+             counted(report.faults, "fault"));
   if (report.fresh + report.kept + report.clear > 0) {
-    fmt::print("contacts: {} ticks by a search, {} among the pairs kept, {} inside a clearance\n",
-               report.fresh, report.kept, report.clear);
+    fmt::print("contacts: {} by a search, {} among the pairs kept, {} inside a clearance\n",
+               counted(report.fresh, "tick"), report.kept, report.clear);
   }
   for (const HandChange& change : simulation.changes()) {
     fmt::print("{:.4g} s: {} {}: {}\n", change.time, change.attach ? "attach" : "release",

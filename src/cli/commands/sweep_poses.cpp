@@ -16,6 +16,7 @@
 #include "cli/progress_bar.h"
 #include "cli/sweeps/part_words.h"
 #include "ist/base/cancellation.h"
+#include "ist/base/counted.h"
 #include "sweep/merge_parts.h"
 #include "sweep/sweep.h"
 
@@ -85,8 +86,8 @@ Made run_share(const Sweep& sweep, const SweepArguments& options, const Share& s
     switch (outcome) {
       case Sweep::Outcome::kStopped:
         throw Failure(kInterrupted,
-                      fmt::format("interrupted: {} parts were made, and part {} left no file",
-                                  result.made.size(), part));
+                      fmt::format("interrupted: {} made, and part {} left no file",
+                                  counted(result.made.size(), "part was", "parts were"), part));
       case Sweep::Outcome::kWasThere:
         estimate.skip();
         result.there.push_back(part);
@@ -98,8 +99,9 @@ Made run_share(const Sweep& sweep, const SweepArguments& options, const Share& s
       case Sweep::Outcome::kMade:
         estimate.add(spent.count());
         result.made.push_back(part);
-        fmt::print(stderr, "part {}: {} rows in {}; {}\n", part, folder.identity().rows_of(part),
-                   duration_text(spent.count()), estimate.text());
+        fmt::print(stderr, "part {}: {} in {}; {}\n", part,
+                   counted(folder.identity().rows_of(part), "row"), duration_text(spent.count()),
+                   estimate.text());
     }
   }
   return result;

@@ -79,8 +79,7 @@ nlohmann::ordered_json block_of(const ViewArguments& options) {
 
 void run(const ViewArguments& options) {
   static_cast<void>(format_by_ending("-o", options.output, std::array{FileFormat::kHtml}));
-  refuse_to_overwrite(options.output,
-                      {options.fixed, options.moving, options.scene, options.pose.matrix});
+  check_output(options.output, {options.fixed, options.moving, options.scene, options.pose.matrix});
   const std::optional<std::filesystem::path> page = find_page();
   if (!page) throw std::runtime_error(kHowToGetPage);
   refuse_to_overwrite(options.output, {*page});

@@ -11,6 +11,7 @@
 #include "advise/closing_path.h"
 #include "answers/refusals.h"
 #include "cli/poses/pose_file.h"
+#include "cli/progress_bar.h"
 #include "ist/base/angles.h"
 #include "ist/base/direction.h"
 #include "ist/base/pose.h"
@@ -156,9 +157,9 @@ ClosingPath find_closing_way(const SphereTree& fixed, const SphereTree& moving,
             fmt::format("needed, because the bodies do not touch where they are stored, nor when "
                         "the moving one goes from there along {}: give poses at which they do",
                         name(-direction.sign)));
-  fmt::print(stderr,
-             "{} poses: opening towards {}, from {:.4g} to {:.4g}; first contact at {:.6g}\n",
-             kClosingPoses, name(direction.sign), path->begin, path->end, path->first_contact);
+  print_past_progress_bar(fmt::format(
+      "{} poses: opening towards {}, from {:.4g} to {:.4g}; first contact at {:.6g}\n",
+      kClosingPoses, name(direction.sign), path->begin, path->end, path->first_contact));
   return *path;
 }
 

@@ -45,6 +45,7 @@ RefinedSurface::RefinedSurface(const SurfaceInBody& side, std::vector<Vertex> ve
   while (!open.empty()) {
     std::vector<RefinedTriangle> next;
     std::unordered_map<std::uint64_t, std::uint32_t> middles;  // of this round's edges
+    middles.reserve(open.size() + open.size() / 2);
     std::vector<Vector> points;
     const auto first = static_cast<std::uint32_t>(vertices_.size());
     // Enough to leave out what is made of the longest triangle, and to hold what is inside.

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "answers/occlusion/labels/label_files.h"
+#include "ist/base/counted.h"
 #include "ist/base/error.h"
 #include "ist/base/files.h"
 #include "ist/mesh/format/text_reader.h"
@@ -95,9 +96,12 @@ ToothLabels read_labels(const std::filesystem::path& given, const TriangleMesh& 
   std::vector<int> labels = labels_of_lines(file, numbers);
   if (labels.size() == mesh.triangles.size()) return labels;
   if (labels.size() == mesh.vertices.size()) return of_triangles(file, mesh, labels);
-  refuse_labels(file, fmt::format("{} labels for a mesh of {} triangles and {} vertices: write one "
-                                  "a line for each triangle, or for each vertex",
-                                  labels.size(), mesh.triangles.size(), mesh.vertices.size()));
+  refuse_labels(
+      file,
+      fmt::format(
+          "{} for a mesh of {} and {}: write one a line for each triangle, or for each vertex",
+          counted(labels.size(), "label"), counted(mesh.triangles.size(), "triangle"),
+          counted(mesh.vertices.size(), "vertex", "vertices")));
 }
 
 }  // namespace ist::answers

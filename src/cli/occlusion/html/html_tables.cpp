@@ -136,7 +136,7 @@ std::string findings_table(const Bite& bite) {
     table.add({"area inside the other body, mean of both", numbers.area(*depth.area) + " mm²"});
   if (depth.point)
     table.add({bite.region ? "deepest vertex in the region" : "deepest point",
-               numbers.place(*depth.point)});
+               numbers.place(*depth.point) + " " + escaped(bite.unit)});
   for (const std::string& note : found.notes) table.add({"note", escaped(note)});
   return table.html();
 }
@@ -234,7 +234,8 @@ std::string contact_tables(const Bite& bite) {
               numbers.volume(contact.depth_integral), numbers.place(contact.centre),
               numbers.place(contact.closest)});
   }
-  return (both.empty() ? "" : both.html()) + (alone.empty() ? "" : alone.html());
+  const std::string reading = fmt::format("<p>Shares: {}.</p>\n", kSharesOnOneBody);
+  return (both.empty() ? "" : both.html()) + (alone.empty() ? "" : alone.html() + reading);
 }
 
 }  // namespace ist::cli

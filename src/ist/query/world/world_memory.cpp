@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ist/base/cancellation.h"
+#include "ist/base/counted.h"
 #include "ist/base/error.h"
 #include "ist/query/contacts/contact_reducer.h"
 #include "ist/query/world/world_state.h"
@@ -46,8 +47,8 @@ BodyPair WorldState::checked(BodyIndex a, BodyIndex b) const {
   for (const BodyIndex body : {a, b}) {
     if (is_there(body)) continue;
     throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("world: body {} is not there: {} bodies were added, from 0 on", body,
-                            bodies.size()));
+                fmt::format("world: body {} is not there: {} added, from 0 on", body,
+                            counted(bodies.size(), "body was", "bodies were")));
   }
   if (a == b) {
     throw Error(ErrorCode::kArgumentInvalid,
@@ -110,10 +111,11 @@ std::uint64_t WorldState::bytes_for(std::span<const BodyPair> pairs, std::uint64
     if (sum <= limit) continue;
     throw Error(
         ErrorCode::kMemoryLimit,
-        fmt::format("world: the pair of '{}' and '{}' takes {:.1f} MB, which with {} pairs before "
+        fmt::format("world: the pair of '{}' and '{}' takes {:.1f} MB, which with {} before "
                     "it makes {:.1f} MB, and max_memory is {:.1f} MB: prepare fewer pairs, ignore "
                     "some, lower query.frontier_pairs or manifold.max_leaves, or raise max_memory",
-                    a.name, b.name, megabytes(bytes), k, megabytes(sum), megabytes(limit)));
+                    a.name, b.name, megabytes(bytes), counted(k, "pair"), megabytes(sum),
+                    megabytes(limit)));
   }
   return sum;
 }
