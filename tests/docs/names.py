@@ -1,5 +1,6 @@
 """Checks the names in capitals on README and the pages of docs: each is in a public header, or is an option of CMake or a
-variable of the environment that something reads. Checks that lists of mesh formats are complete. Checks the names of scripts in HACKING: each is there, and none is left out."""
+variable of the environment that something reads. Checks that lists of mesh formats are complete. Checks the names of
+scripts in HACKING: each is there, and none is left out."""
 
 import pathlib
 import re
