@@ -7,9 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "answers/answer.h"
 #include "cli/terminal.h"
 
 namespace ist::cli {

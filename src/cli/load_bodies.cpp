@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 
@@ -17,9 +16,7 @@
 #include "cli/common_options.h"
 #include "cli/progress_bar.h"
 #include "ist/base/error.h"
-#include "ist/mesh/mesh.h"
 #include "ist/tree/mesh_source.h"
-#include "ist/tree/sphere_tree.h"
 
 namespace ist::cli {
 

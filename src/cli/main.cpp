@@ -7,10 +7,8 @@
 #include <limits>
 #include <memory>
 #include <new>
-#include <optional>
 #include <sstream>
 #include <string>
-#include <string_view>
 #include <system_error>
 #include <vector>
 

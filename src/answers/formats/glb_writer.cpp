@@ -13,7 +13,6 @@
 #include "answers/formats/little_endian.h"
 #include "ist/base/assert.h"
 #include "ist/base/error.h"
-#include "ist/base/files.h"
 
 namespace ist::answers {
 namespace {

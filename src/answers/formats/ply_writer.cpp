@@ -11,7 +11,6 @@
 #include "answers/formats/little_endian.h"
 #include "ist/base/assert.h"
 #include "ist/base/error.h"
-#include "ist/base/files.h"
 #include "ist/mesh/format/frame_tags.h"
 
 namespace ist::answers {

@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "answers/occlusion/bite_hints.h"
 #include "answers/refusals.h"

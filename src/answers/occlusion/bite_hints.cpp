@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "answers/occlusion/bite_direction.h"
 #include "answers/occlusion/bite_numbers.h"

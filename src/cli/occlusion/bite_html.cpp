@@ -7,7 +7,6 @@
 #include "cli/occlusion/html/bite_figures.h"
 #include "cli/occlusion/html/html_tables.h"
 #include "cli/occlusion/html/html_text.h"
-#include "ist/base/files.h"
 
 namespace ist::cli {
 

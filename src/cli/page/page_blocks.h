@@ -1,11 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "answers/bodies.h"
 #include "answers/occlusion/bite_maker.h"

@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "answers/refusals.h"
 #include "ist/base/angles.h"

@@ -10,7 +10,6 @@
 
 #include "advise/closing_path.h"
 #include "answers/refusals.h"
-#include "cli/poses/pose_file.h"
 #include "ist/base/angles.h"
 #include "ist/base/direction.h"
 #include "ist/base/pose.h"

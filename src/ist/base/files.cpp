@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "ist/base/cancellation.h"
-#include "ist/base/error.h"
 
 namespace ist {
 namespace {

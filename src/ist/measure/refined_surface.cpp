@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <unordered_map>
 
 #include "ist/base/error.h"
-#include "ist/measure/point_search.h"
 
 namespace ist {
 namespace {

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "ist/base/error.h"
 #include "ist/query/query_rules.h"
 #include "ist/query/relative_pose.h"

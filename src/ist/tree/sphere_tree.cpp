@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "ist/base/assert.h"
 #include "ist/base/error.h"

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "ist/base/error.h"
 #include "ist/base/pose.h"
 

@@ -9,7 +9,6 @@
 
 #include "ist/base/printable.h"
 #include "ist/mesh/format/mesh_readers.h"
-#include "ist/mesh/format/text_reader.h"
 
 namespace ist {
 namespace {

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 
 #include "ist/base/error.h"
-#include "ist/tree/tree_parts.h"
 
 namespace ist {
 namespace {
