@@ -15,7 +15,7 @@
 #include "answers/refusals.h"
 #include "cli/common_options.h"
 #include "cli/progress_bar.h"
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 #include "ist/tree/mesh_source.h"
 
 namespace ist::cli {
@@ -171,9 +171,8 @@ void warn_of_units(const LoadedBody& fixed, const LoadedBody& moving) {
 
 CheckedMesh load_mesh(const std::filesystem::path& file) {
   if (is_tree_file(file)) {
-    throw Error(
-        ErrorCode::kNotAMesh,
-        fmt::format("{}: this is a tree: name the mesh that it was built from", file.string()));
+    throw_error(ErrorCode::kNotAMesh, "{}: this is a tree: name the mesh that it was built from",
+                file.string());
   }
   CheckedMesh checked{read_mesh(file), {}};
   MeshReport report = check_mesh(checked.mesh);

@@ -12,8 +12,8 @@
 #include "answers/occlusion/bite_numbers.h"
 #include "answers/refusals.h"
 #include "answers/version.h"
-#include "ist/base/error.h"
 #include "ist/base/pose.h"
+#include "ist/base/throw_error.h"
 
 namespace ist::answers {
 namespace {
@@ -51,10 +51,10 @@ void require_size(const Bodies& bodies, const Bite& bite) {
 
 void require_area(const BiteBody& body, const std::string& name) {
   if (body.surface.total_area > 0) return;
-  throw Error(ErrorCode::kMeshExtent,
-              fmt::format("{}: the mesh is flat: no triangle has an area, so nothing can touch it: "
-                          "write it again from its scan",
-                          name));
+  throw_error(ErrorCode::kMeshExtent,
+              "{}: the mesh is flat: no triangle has an area, so nothing can touch it: "
+              "write it again from its scan",
+              name);
 }
 
 OcclusionOptions options_of(const Bite& bite) {

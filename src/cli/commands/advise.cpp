@@ -23,6 +23,7 @@
 #include "cli/progress_bar.h"
 #include "cli/terminal.h"
 #include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/bounding_box.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/voxel/voxelizer.h"
@@ -68,7 +69,7 @@ CheckedMesh load(const std::filesystem::path& file) {
   CheckedMesh checked = load_mesh(file);
   const std::optional<Error> flaw = lattice_flaw(checked.mesh, kAny);
   if (flaw && flaw->code() == ErrorCode::kMeshExtent) {  // at any voxel size
-    throw Error(flaw->code(), fmt::format("{}: {}", file.string(), flaw->what()));
+    throw_error(flaw->code(), "{}: {}", file.string(), flaw->what());
   }
   return checked;
 }
@@ -80,12 +81,11 @@ double coarsest_for(const TriangleMesh& fixed, const TriangleMesh& moving,
   const bool fixed_is_larger = of_fixed > of_moving;
   const std::filesystem::path& larger = fixed_is_larger ? options.fixed : options.moving;
   const std::filesystem::path& smaller = fixed_is_larger ? options.moving : options.fixed;
-  throw Error(
-      ErrorCode::kMeshExtent,
-      fmt::format("{}: {:.1e} times as large as {}, so no voxel size suits both: give only "
-                  "the part of it that can be in contact",
-                  larger.string(), std::max(of_fixed, of_moving) / std::min(of_fixed, of_moving),
-                  smaller.string()));
+  throw_error(ErrorCode::kMeshExtent,
+              "{}: {:.1e} times as large as {}, so no voxel size suits both: give only "
+              "the part of it that can be in contact",
+              larger.string(), std::max(of_fixed, of_moving) / std::min(of_fixed, of_moving),
+              smaller.string());
 }
 
 // Builds a tree of one voxel for exact queries, which do without voxels.
@@ -135,10 +135,10 @@ void run(const AdviseArguments& options) {
       const auto measured = measure_size(exact, poses, path, voxel_size, options.measure, progress);
       // Coarse voxels overlap first, and are tried first.
       if (options.budget && measured && measured->max_leaf_pairs == 0) {
-        throw Error(ErrorCode::kInputInvalid,
-                    fmt::format("{}: at no pose do voxels of {:g} touch, so no query takes time: "
-                                "add the poses with most contact",
-                                options.poses.string(), voxel_size));
+        throw_error(ErrorCode::kInputInvalid,
+                    "{}: at no pose do voxels of {:g} touch, so no query takes time: "
+                    "add the poses with most contact",
+                    options.poses.string(), voxel_size);
       }
       return measured;
     });
@@ -146,10 +146,10 @@ void run(const AdviseArguments& options) {
   if (options.error && !options.poses.empty() && !advice.measured.empty() &&
       std::all_of(advice.measured.begin(), advice.measured.end(),
                   [](const SizeMeasure& size) { return size.error == 0; })) {
-    throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{}: no pose shows an error, because at each the surfaces touch or the "
-                            "voxels do not: add poses shortly before the bodies touch",
-                            options.poses.string()));
+    throw_error(ErrorCode::kInputInvalid,
+                "{}: no pose shows an error, because at each the surfaces touch or the "
+                "voxels do not: add poses shortly before the bodies touch",
+                options.poses.string());
   }
   if (options.json) {
     print_header("advise", {{"fixed", options.fixed}, {"moving", options.moving}});

@@ -20,7 +20,7 @@
 #include "cli/recordings/tick_lines.h"
 #include "cli/recordings/tick_recorder.h"
 #include "cli/terminal.h"
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 #include "ist/haptics/servo_loop.h"
 #include "ist/scene.h"
 
@@ -83,9 +83,8 @@ void replay_ticks(BuiltScene& built, const Scene& scene, const RunArguments& opt
     ++ticks;
   }
   if (ticks == 0 && !stop) {
-    throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{}: it holds no tick: give a file that --record wrote",
-                            options.replay.string()));
+    throw_error(ErrorCode::kInputInvalid, "{}: it holds no tick: give a file that --record wrote",
+                options.replay.string());
   }
   if (run.recorder) run.recorder->complete();
   fmt::print(stderr, "replayed {} ticks\n", ticks);

@@ -16,6 +16,7 @@
 #include "cli/progress_bar.h"
 #include "cli/sweeps/part_words.h"
 #include "ist/base/cancellation.h"
+#include "ist/base/throw_error.h"
 #include "sweep/merge_parts.h"
 #include "sweep/sweep.h"
 
@@ -150,9 +151,9 @@ void show_status(const SweepArguments& options, const Sweep& sweep) {
   }();
   print_status(sweep, status, options.json);
   if (status.damaged.empty()) return;
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{}: parts are damaged: remove their files to make them anew: {}",
-                          options.folder.string(), ranges(status.damaged)));
+  throw_error(ErrorCode::kInputInvalid,
+              "{}: parts are damaged: remove their files to make them anew: {}",
+              options.folder.string(), ranges(status.damaged));
 }
 
 }  // namespace

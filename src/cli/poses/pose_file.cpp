@@ -12,9 +12,9 @@
 
 #include "answers/refusals.h"
 #include "ist/base/angles.h"
-#include "ist/base/error.h"
 #include "ist/base/files.h"
 #include "ist/base/pose.h"
+#include "ist/base/throw_error.h"
 
 namespace ist::cli {
 
@@ -29,7 +29,7 @@ constexpr const char* kReadTypes =
 
 [[noreturn]] void refuse(ErrorCode code, const std::filesystem::path& file,
                          const std::string& what) {
-  throw Error(code, fmt::format("{}: {}", file.string(), what));
+  throw_error(code, "{}: {}", file.string(), what);
 }
 
 // The text after `key` on its line, or nothing if no line begins with it. Two such lines are a list

@@ -6,8 +6,8 @@
 #include <system_error>
 
 #include "answers/occlusion/labels/label_files.h"
-#include "ist/base/error.h"
 #include "ist/base/files.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/format/text_reader.h"
 
 namespace ist::answers {
@@ -55,9 +55,8 @@ bool is_tooth_number(std::int64_t number, ToothNumbers system) {
 }
 
 void refuse_tooth_number(std::int64_t number, ToothNumbers system, const std::string& place) {
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{} is {}: {}; see --numbering", place, number,
-                          system == ToothNumbers::kFdi ? kFdi : kUniversal));
+  throw_error(ErrorCode::kInputInvalid, "{} is {}: {}; see --numbering", place, number,
+              system == ToothNumbers::kFdi ? kFdi : kUniversal);
 }
 
 std::string text_of(const std::filesystem::path& file) {
@@ -68,7 +67,7 @@ std::string text_of(const std::filesystem::path& file) {
 }
 
 void refuse_labels(const std::filesystem::path& file, const std::string& detail) {
-  throw Error(ErrorCode::kInputInvalid, fmt::format("{}: {}", file.string(), detail));
+  throw_error(ErrorCode::kInputInvalid, "{}: {}", file.string(), detail);
 }
 
 LabelSource label_source(const std::filesystem::path& file) {

@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "answers/occlusion/labels/label_files.h"
-#include "ist/base/error.h"
 #include "ist/base/printable.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/format/vtk_surface.h"
 
 namespace ist::answers {
@@ -75,8 +75,7 @@ std::vector<int> tooth_numbers(const Array& array, const std::filesystem::path& 
   };
   for (const double number : array.numbers) {
     if (!(std::abs(number) < 1e9) || number != std::floor(number)) {
-      throw Error(ErrorCode::kInputInvalid,
-                  fmt::format("{} is {}: write whole numbers", place(), number));
+      throw_error(ErrorCode::kInputInvalid, "{} is {}: write whole numbers", place(), number);
     }
     const auto label = static_cast<int>(number);
     const int tooth = is_gum(label, system) ? 0 : label;

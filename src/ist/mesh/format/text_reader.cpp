@@ -8,6 +8,7 @@
 
 #include "ist/base/platform/from_chars.h"
 #include "ist/base/printable.h"
+#include "ist/base/throw_error.h"
 
 namespace ist {
 namespace {
@@ -50,7 +51,7 @@ std::optional<double> number_of(std::string_view word, Precision precision) {
 
 void fail_mesh(ErrorCode code, std::string_view file, std::string_view place,
                std::string_view cause) {
-  throw Error(code, fmt::format("{}: {}{}{}", file, place, place.empty() ? "" : ": ", cause));
+  throw_error(code, "{}: {}{}{}", file, place, place.empty() ? "" : ": ", cause);
 }
 
 bool is_coordinate(double number) {
