@@ -44,8 +44,7 @@ void require_triangles(const Bodies& bodies) {
        {std::pair(&bodies.fixed, &bodies.fixed_name), {&bodies.moving, &bodies.moving_name}}) {
     if (tree->triangles()) continue;
     throw_error(ErrorCode::kTrianglesMissing,
-                "{}: the tree has no triangles: build it without --no-triangles, or name the "
-                "mesh",
+                "{}: the tree has no triangles: build it without --no-triangles, or name the mesh",
                 *name);
   }
 }

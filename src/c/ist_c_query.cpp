@@ -26,8 +26,7 @@ ist_status check_query_options(const Call& call, const ist_query_options& known)
   }
   if (std::max(known.frontier_pairs, known.front_pairs) > kMostPairs) {
     return call.fail(IST_ARGUMENT_INVALID,
-                     "options->frontier_pairs is {} and front_pairs is {}: "
-                     "pass at most {}",
+                     "options->frontier_pairs is {} and front_pairs is {}: pass at most {}",
                      known.frontier_pairs, known.front_pairs, kMostPairs);
   }
   if (known.contacts < -1 || known.contacts > kMostContacts) {
@@ -37,10 +36,10 @@ ist_status check_query_options(const Call& call, const ist_query_options& known)
         known.contacts, kMostContacts);
   }
   if (!(known.margin >= 0 && known.margin <= kMostMargin)) {
-    return call.fail(IST_ARGUMENT_INVALID,
-                     "options->margin is {}: pass a number from 0, where surfaces meet, to {} mean "
-                     "voxel sizes",
-                     known.margin, kMostMargin);
+    return call.fail(
+        IST_ARGUMENT_INVALID,
+        "options->margin is {}: pass a number from 0, where surfaces meet, to {} mean voxel sizes",
+        known.margin, kMostMargin);
   }
   return IST_OK;
 }

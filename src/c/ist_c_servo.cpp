@@ -184,10 +184,9 @@ ist_status ist_servo_on_tick(ist_servo* servo, const double pose[16], double for
     if (!ist::Placement::from(to_isometry(pose))) {
       return status_of(call, ist::QueryStatus::kInvalidPose, pose);
     }
-    return call.fail(
-        IST_SERVO_FAULT,
-        "a force was not a number: the output is zero, and forces return gradually; report "
-        "the scene if this repeats");
+    return call.fail(IST_SERVO_FAULT,
+                     "a force was not a number: the output is zero, and forces return gradually; "
+                     "report the scene if this repeats");
   });
 }
 

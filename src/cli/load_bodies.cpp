@@ -95,10 +95,10 @@ double convert_unit(const LoadedBody& fixed, LoadedBody& moving, bool is_moving_
     const bool is_fixed_known = moving.unit == kUnknown;
     const LoadedBody &known = is_fixed_known ? fixed : moving,
                      &other = is_fixed_known ? moving : fixed;
-    note(fmt::format(
-        "{} says no unit, and is taken to be in {}, as {} is: if it is not, give --unit "
-        "and --unit-moving",
-        other.name(), to_string(known.unit), known.name()));
+    note(
+        fmt::format("{} says no unit, and is taken to be in {}, as {} is: if it is not, give "
+                    "--unit and --unit-moving",
+                    other.name(), to_string(known.unit), known.name()));
     return 1;
   }
   refuse_if(moving.tree.has_value(), moving.name(),
@@ -107,10 +107,9 @@ double convert_unit(const LoadedBody& fixed, LoadedBody& moving, bool is_moving_
                         to_string(moving.unit), fixed.name(), to_string(fixed.unit)));
   refuse_if(
       !is_moving_told, moving.name(),
-      fmt::format("its unit is {}, and the unit of {} is {}: give --unit-moving {} to convert "
-                  "the mesh",
-                  to_string(moving.unit), fixed.name(), to_string(fixed.unit),
-                  to_string(moving.unit)));
+      fmt::format(
+          "its unit is {}, and the unit of {} is {}: give --unit-moving {} to convert the mesh",
+          to_string(moving.unit), fixed.name(), to_string(fixed.unit), to_string(moving.unit)));
   // Both in micrometres are whole numbers, so that the factor is rounded once.
   const double factor = std::round(1e6 * metres_per_unit(moving.unit)) /
                         std::round(1e6 * metres_per_unit(fixed.unit));

@@ -24,10 +24,9 @@ void add_engine_options(CLI::App& command, QuestionOptions& options) {
       ->transform(one_of(policy_names()))
       ->group(group);
   command
-      .add_option(
-          "--engine", options.engines,
-          "times simd, the fast query of leaf pairs, or reference, the published one; given "
-          "twice, both in turn")
+      .add_option("--engine", options.engines,
+                  "times simd, the fast query of leaf pairs, or reference, the published one; "
+                  "given twice, both in turn")
       ->transform(one_of({kEngineNames.begin(), kEngineNames.end()}))
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
@@ -41,8 +40,8 @@ void add_engine_options(CLI::App& command, QuestionOptions& options) {
       ->group(group);
   command
       .add_option("--target", options.target,
-                  "instruction set of simd, one that ist --version lists; by default IST_TARGET "
-                  "of the environment, or the first. All answer alike")
+                  "instruction set of simd, one that ist --version lists; by default IST_TARGET of "
+                  "the environment, or the first. All answer alike")
       ->type_name("NAME")
       ->group(group);
   command.add_option("--repeat", options.repeat, "times that each pose is timed; prints --timing")
@@ -112,32 +111,29 @@ void add_query_options(CLI::App& command, QuestionOptions& options) {
       ->required();
   command.add_option("--voxel-size", options.files.voxel_size,
                      "edge of a voxel, in mesh units; by default a 500th of the smaller body's "
-                     "largest extent. A mesh gets voxels if --contacts, an option of the engine "
-                     "or a tree without triangles needs them");
-  command
-      .add_option("--distance", options.questions.distance,
-                  "how sharp the distance of the surfaces shall be; by default a 10,000th of that "
-                  "extent")
-      ->check(tolerance());
+                     "largest extent. A mesh gets voxels if --contacts, an option of the engine or "
+                     "a tree without triangles needs them");
   command
       .add_option(
-          "--depth", options.questions.depth,
-          "how sharp the penetration depth shall be, by default a 10,000th of that extent; it is "
-          "how deep the deepest point of either surface lies in the other body")
+          "--distance", options.questions.distance,
+          "how sharp the distance of the surfaces shall be; by default a 10,000th of that extent")
+      ->check(tolerance());
+  command
+      .add_option("--depth", options.questions.depth,
+                  "how sharp the penetration depth shall be, by default a 10,000th of that extent; "
+                  "it is how deep the deepest point of either surface lies in the other body")
       ->check(tolerance());
   command.add_flag("--exact", options.questions.triangle_pairs,
                    "count all pairs of triangles that meet");
   command
       .add_option(
           "--contacts", options.contacts,
-          "write leaf pairs, and the contact points that they are reduced to, at most "
-          "32 a pose, in fixed coordinates, to this file, by its ending: .jsonl, .csv, .vtp "
-          "or .ply")
+          "write leaf pairs, and the contact points that they are reduced to, at most 32 a pose, "
+          "in fixed coordinates, to this file, by its ending: .jsonl, .csv, .vtp or .ply")
       ->type_name("FILE");
-  command.add_flag(
-      "--fail-if-touching", options.fail_if_touching,
-      "exit code 6 where the bodies touch, or may, or one lies in the other, at any pose; 1 where "
-      "that is unknown");
+  command.add_flag("--fail-if-touching", options.fail_if_touching,
+                   "exit code 6 where the bodies touch, or may, or one lies in the other, at any "
+                   "pose; 1 where that is unknown");
   add_units_and_frame(command, options.files);
   add_max_memory(command, options.files.max_memory);
   command.add_flag("--json", options.json, "print one JSON object a line");

@@ -166,11 +166,10 @@ PlacedPolygons read_scene(Input input, std::string_view format) {
   Assimp::DefaultLogger::kill();
   const bool unread = scene == nullptr || scene->mRootNode == nullptr;
   if (!files->missing().empty() && (unread || !loss.empty()))
-    refuse(
-        ErrorCode::kFileUnreadable, "",
-        fmt::format("it names the file '{}', which is not in its folder or below: copy it there, "
-                    "or export one file that holds all",
-                    printable(files->missing(), 200)));
+    refuse(ErrorCode::kFileUnreadable, "",
+           fmt::format("it names the file '{}', which is not in its folder or below: copy it "
+                       "there, or export one file that holds all",
+                       printable(files->missing(), 200)));
   if (unread || !loss.empty())
     refuse_scene(unread, loss.empty() ? importer.GetErrorString() : loss, files->main_file());
   PlacedPolygons placed;

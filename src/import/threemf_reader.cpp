@@ -265,10 +265,8 @@ class ThreeMfReader {
       left.pop_back();
       const Object& object = use.model->object(use.object);
       if (use.depth > kDeepest)
-        use.model->fail(
-            fmt::format("object {} holds itself, or is nested too deeply; export the "
-                        "mesh again",
-                        use.object));
+        use.model->fail(fmt::format(
+            "object {} holds itself, or is nested too deeply; export the mesh again", use.object));
       if (!object.is_body) {
         left_out_ = true;
         continue;

@@ -101,10 +101,9 @@ std::string NpyPoses::identity() const { return fmt::format("file {} count {}", 
 
 void NpyPoses::require_unchanged() const {
   if (file_.written_at() == written_at_) return;
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{}: the file was written since the sweep was opened: begin anew, with a "
-                          "folder of its own",
-                          file_.path().string()));
+  throw Error(ErrorCode::kInputInvalid, fmt::format("{}: the file was written since the sweep was "
+                                                    "opened: begin anew, with a folder of its own",
+                                                    file_.path().string()));
 }
 
 std::string npy_header(const RowLayout& layout, std::uint64_t rows) {

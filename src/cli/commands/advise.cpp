@@ -56,9 +56,9 @@ void check(const AdviseArguments& options) {
             "contradicts --poses, which give the poses to measure");
   static_cast<void>(select_kernels(options.measure.target));  // before anything is built
   for (const std::filesystem::path& file : {options.fixed, options.moving}) {
-    refuse_if(is_tree_file(file), file.string(),
-              "it is a tree, whose voxel size is fixed already: name the mesh that it was built "
-              "from");
+    refuse_if(
+        is_tree_file(file), file.string(),
+        "it is a tree, whose voxel size is fixed already: name the mesh that it was built from");
   }
 }
 
@@ -82,8 +82,8 @@ double coarsest_for(const TriangleMesh& fixed, const TriangleMesh& moving,
   const std::filesystem::path& larger = fixed_is_larger ? options.fixed : options.moving;
   const std::filesystem::path& smaller = fixed_is_larger ? options.moving : options.fixed;
   throw_error(ErrorCode::kMeshExtent,
-              "{}: {:.1e} times as large as {}, so no voxel size suits both: give only "
-              "the part of it that can be in contact",
+              "{}: {:.1e} times as large as {}, so no voxel size suits both: give only the part of "
+              "it that can be in contact",
               larger.string(), std::max(of_fixed, of_moving) / std::min(of_fixed, of_moving),
               smaller.string());
 }
@@ -136,8 +136,8 @@ void run(const AdviseArguments& options) {
       // Coarse voxels overlap first, and are tried first.
       if (options.budget && measured && measured->max_leaf_pairs == 0) {
         throw_error(ErrorCode::kInputInvalid,
-                    "{}: at no pose do voxels of {:g} touch, so no query takes time: "
-                    "add the poses with most contact",
+                    "{}: at no pose do voxels of {:g} touch, so no query takes time: add the poses "
+                    "with most contact",
                     options.poses.string(), voxel_size);
       }
       return measured;
@@ -147,8 +147,8 @@ void run(const AdviseArguments& options) {
       std::all_of(advice.measured.begin(), advice.measured.end(),
                   [](const SizeMeasure& size) { return size.error == 0; })) {
     throw_error(ErrorCode::kInputInvalid,
-                "{}: no pose shows an error, because at each the surfaces touch or the "
-                "voxels do not: add poses shortly before the bodies touch",
+                "{}: no pose shows an error, because at each the surfaces touch or the voxels do "
+                "not: add poses shortly before the bodies touch",
                 options.poses.string());
   }
   if (options.json) {
@@ -193,8 +193,8 @@ void add_advise(CLI::App& app) {
   command
       ->add_option(
           "--poses", options->poses,
-          "JSON: an array of objects with \"pose\", 16 numbers, column by column; by "
-          "default a straight closing path to the stored pose, or from there to first contact")
+          "JSON: an array of objects with \"pose\", 16 numbers, column by column; by default a "
+          "straight closing path to the stored pose, or from there to first contact")
       ->type_name("FILE");
   command
       ->add_option("--axis", options->axis,
@@ -206,18 +206,17 @@ void add_advise(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--target", options->measure.target,
-                   "instruction set, one that ist --version lists; by default IST_TARGET of "
-                   "the environment, or the first")
+                   "instruction set, one that ist --version lists; by default IST_TARGET of the "
+                   "environment, or the first")
       ->type_name("NAME");
   add_max_memory(*command, options->measure.max_memory);
   command->add_flag("--json", options->json, "print one JSON object a line");
-  add_example(
-      *command,
-      "Each voxel size is built and timed, so let nothing else run: the printed time is "
-      "the median of the slowest pose.\n"
-      "The error is measured against triangles, on the same path; the bound beside it is certain "
-      "for any pose.\n"
-      "Example: ist advise maxilla.stl mandible.stl --budget-us 300");
+  add_example(*command,
+              "Each voxel size is built and timed, so let nothing else run: the printed time is "
+              "the median of the slowest pose.\n"
+              "The error is measured against triangles, on the same path; the bound beside it is "
+              "certain for any pose.\n"
+              "Example: ist advise maxilla.stl mandible.stl --budget-us 300");
   command->callback([options] { run(*options); });
 }
 

@@ -244,10 +244,9 @@ void run(const OcclusionArguments& options) {
 void add_measure_options(CLI::App& command, OcclusionArguments& options) {
   BiteQuestions& questions = options.questions;
   command
-      .add_option(
-          "--preset", options.preset,
-          "limits of the areas and bands: scan 0, 100 µm; owens 50, 350; biteeye 9, 29, 59, "
-          "89, 149; paper 200; stl 100 to 400; shim 10")
+      .add_option("--preset", options.preset,
+                  "limits of the areas and bands: scan 0, 100 µm; owens 50, 350; biteeye 9, 29, "
+                  "59, 89, 149; paper 200; stl 100 to 400; shim 10")
       ->transform(one_of(preset_names()))
       ->capture_default_str();
   command
@@ -288,12 +287,10 @@ void add_patient_options(CLI::App& command, OcclusionArguments& options) {
       ->type_name("X,Y,Z")
       ->group(group);
   command
-      .add_option(
-          "--labels-fixed", questions.labels_fixed,
-          "the fixed body's tooth numbers, 0 for no tooth: the mesh as a .vtk or .vtp "
-          "(FILE:ARRAY), "
-          "as a .ply with a property label, or as an .obj with groups such as tooth_16; or a text "
-          "of a number a line, for each triangle or vertex")
+      .add_option("--labels-fixed", questions.labels_fixed,
+                  "the fixed body's tooth numbers, 0 for no tooth: the mesh as a .vtk or .vtp "
+                  "(FILE:ARRAY), as a .ply with a property label, or as an .obj with groups such "
+                  "as tooth_16; or a text of a number a line, for each triangle or vertex")
       ->type_name("FILE")
       ->group(group);
   command.add_option("--labels-moving", questions.labels_moving, "the moving body's")
@@ -319,12 +316,11 @@ void add_occlusion(CLI::App& app) {
       ->type_name("FILE")
       ->required();
   command
-      ->add_option(
-          "-o,--output", options->outputs,
-          "file to write, by its ending: .vtp (ParaView, Slicer), .ply (MeshLab, "
-          "Blender), .glb (browsers), .csv (Excel, R), .json, .html (the interactive page if "
-          "it is installed, else a static report), .report.html (the report always); "
-          "may be given again; without it only text is printed")
+      ->add_option("-o,--output", options->outputs,
+                   "file to write, by its ending: .vtp (ParaView, Slicer), .ply (MeshLab, "
+                   "Blender), .glb (browsers), .csv (Excel, R), .json, .html (the interactive page "
+                   "if it is installed, else a static report), .report.html (the report always); "
+                   "may be given again; without it only text is printed")
       ->type_name("FILE");
   add_measure_options(*command, *options);
   command->add_option("--side", options->side, "write this body alone, to .vtp, .ply and .glb")
@@ -339,17 +335,19 @@ void add_occlusion(CLI::App& app) {
                       "open the pair like a book, with this gap, millimetres: .ply and .glb");
   command->add_flag("--no-names", options->questions.no_names,
                     "write fixed and moving for the files' names");
-  command->add_flag("--fail-if-touching", options->fail_if_touching,
-                    "exit code 6 where the bodies touch, or one lies in the other; 1 where that is "
-                    "unknown");
+  command->add_flag(
+      "--fail-if-touching", options->fail_if_touching,
+      "exit code 6 where the bodies touch, or one lies in the other; 1 where that is unknown");
   add_max_memory(*command, options->files.max_memory, "a body's tree of triangles");
   command->add_flag("--json", options->json, "print the measures as JSON");
   add_patient_options(*command, *options);
   add_pose_options(*command, options->pose, Poses::kOne);
-  add_example(*command, std::string("Examples: ist occlusion upper.stl lower.stl -o bite.vtp\n"
-                                    "          ist occlusion upper.stl lower.stl --frame lps -o "
-                                    "bite.html -o bite.csv\n\n") +
-                            kCaveat);
+  add_example(
+      *command,
+      std::string(
+          "Examples: ist occlusion upper.stl lower.stl -o bite.vtp\n"
+          "          ist occlusion upper.stl lower.stl --frame lps -o bite.html -o bite.csv\n\n") +
+          kCaveat);
   command->callback([options] { run(*options); });
 }
 

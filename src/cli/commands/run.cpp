@@ -139,12 +139,10 @@ void run(const RunArguments& options) {
                     report.lost_records));
   }
   if (report.missed > options.allow_missed) {
-    throw Failure(
-        kDeadlinesMissed,
-        fmt::format(
-            "{} deadlines were missed, and {} are allowed: use larger voxels or a lower --rate, or "
-            "allow more with --allow-missed",
-            report.missed, options.allow_missed));
+    throw Failure(kDeadlinesMissed,
+                  fmt::format("{} deadlines were missed, and {} are allowed: use larger voxels or "
+                              "a lower --rate, or allow more with --allow-missed",
+                              report.missed, options.allow_missed));
   }
 }
 

@@ -137,12 +137,11 @@ GivenPose read_itk(const std::filesystem::path& file, const std::string& content
   const auto made = transform_of(kind, *numbers, *centre);
   if (!made || !name.ends_with("_3_3") ||
       (centre->size() > 4 || (!centre->empty() && centre->size() < 3))) {
-    refuse(
-        ErrorCode::kInputInvalid, file,
-        fmt::format("{} of {} parameters and {} fixed ones is no rigid transform that can be read: "
-                    "{}",
-                    name.empty() ? "a transform without a name" : name, numbers->size(),
-                    centre->size(), kReadTypes));
+    refuse(ErrorCode::kInputInvalid, file,
+           fmt::format(
+               "{} of {} parameters and {} fixed ones is no rigid transform that can be read: {}",
+               name.empty() ? "a transform without a name" : name, numbers->size(), centre->size(),
+               kReadTypes));
   }
   Eigen::Vector3d c(0, 0, 0);
   if (centre->size() >= 3) c = Eigen::Vector3d((*centre)[0], (*centre)[1], (*centre)[2]);

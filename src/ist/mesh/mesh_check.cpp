@@ -128,9 +128,8 @@ void require_valid(const TriangleMesh& mesh) {
     for (const std::uint32_t vertex : mesh.triangles[i]) {
       if (vertex < mesh.vertices.size()) continue;
       throw_error(ErrorCode::kMeshBadIndex,
-                  "triangle {} has the vertex index {}, but there are {} vertices: count "
-                  "from 0",
-                  i, vertex, mesh.vertices.size());
+                  "triangle {} has the vertex index {}, but there are {} vertices: count from 0", i,
+                  vertex, mesh.vertices.size());
     }
   }
 }
@@ -186,8 +185,8 @@ std::vector<std::string> warnings(const MeshReport& report) {
   if (report.self_intersections > 0) {
     const SelfIntersection& first = report.first_self_intersections.front();
     sentences.push_back(fmt::format(
-        "The surface intersects itself: {}{} pair{} of triangles, first {} and {} near "
-        "({:g}, {:g}, {:g}).{}",
+        "The surface intersects itself: {}{} pair{} of triangles, first {} and {} near ({:g}, "
+        "{:g}, {:g}).{}",
         report.self_intersections_complete ? "" : "at least ", report.self_intersections,
         report.self_intersections == 1 ? "" : "s", first.triangles[0], first.triangles[1],
         first.near[0], first.near[1], first.near[2],

@@ -109,11 +109,10 @@ void Session::name(answers::Bodies& bodies) {
   bodies.fixed_name = present(Role::kFixed).name();
   bodies.moving_name = present(Role::kMoving).name();
   if (contradict(bodies.fixed.frame(), bodies.moving.frame())) {
-    refuse(
-        fmt::format("{} is in the frame {}, and {} in {}: turn one into the other, in the panel "
-                    "Bodies",
-                    bodies.fixed_name, to_string(bodies.fixed.frame()), bodies.moving_name,
-                    to_string(bodies.moving.frame())));
+    refuse(fmt::format(
+        "{} is in the frame {}, and {} in {}: turn one into the other, in the panel Bodies",
+        bodies.fixed_name, to_string(bodies.fixed.frame()), bodies.moving_name,
+        to_string(bodies.moving.frame())));
   }
 }
 

@@ -14,8 +14,7 @@ namespace ist::answers {
 namespace {
 
 constexpr const char* kFdi =
-    "FDI numbers are 11 to 18 up to 41 to 48, of milk teeth 51 to 55 up "
-    "to 81 to 85; 0 is no tooth";
+    "FDI numbers are 11 to 18 up to 41 to 48, of milk teeth 51 to 55 up to 81 to 85; 0 is no tooth";
 constexpr const char* kUniversal = "universal numbers are 1 to 32; 0 is no tooth";
 
 bool is_vtk(const std::filesystem::path& file) {

@@ -100,10 +100,9 @@ ToothLabels labels_of_vtk(const LabelSource& source, ToothNumbers system) {
       const auto& [a, b, c] = face.points;
       of_triangles.push_back(tooth_of_corners(numbers[a], numbers[b], numbers[c]));
     } else {
-      refuse_labels(source.file,
-                    fmt::format("cell {} has {} corners, and labels of points need three: "
-                                "triangulate the mesh, or label its cells",
-                                face.cell, face.corners));
+      refuse_labels(source.file, fmt::format("cell {} has {} corners, and labels of points need "
+                                             "three: triangulate the mesh, or label its cells",
+                                             face.cell, face.corners));
     }
   }
   return of_triangles;

@@ -134,10 +134,9 @@ double TextReader::coordinate(std::string_view word, Precision precision) const 
   if (!number)
     fail_malformed(fmt::format("'{}' is not a number; export the mesh again", printable(word)));
   if (!is_coordinate(*number))
-    fail(ErrorCode::kMeshNotFinite,
-         fmt::format("the coordinate '{}' is not finite, or beyond a float's range; repair the "
-                     "mesh where it was made",
-                     printable(word)));
+    fail(ErrorCode::kMeshNotFinite, fmt::format("the coordinate '{}' is not finite, or beyond a "
+                                                "float's range; repair the mesh where it was made",
+                                                printable(word)));
   return *number;
 }
 
