@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "ist/base/checksum.h"
-#include "ist/base/error.h"
 #include "ist/base/files.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/parallel.h"
+#include "ist/base/throw_error.h"
 #include "ist/measure/require.h"
 #include "ist/tree/mesh_source.h"
 #include "ist/tree/sphere_tree.h"
@@ -57,10 +57,10 @@ SweepIdentity identity_of(const SweepFile& file) {
 SphereTree read_same_tree(const SweepFile::Body& body) {
   SphereTree tree = read_tree(body.tree);
   if (hash_of_file(body.tree) == body.hash) return tree;
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{}: the tree changed since the sweep was opened: take the tree that the "
-                          "sweep was made for, or begin anew, with a folder of its own",
-                          body.tree.string()));
+  throw_error(ErrorCode::kInputInvalid,
+              "{}: the tree changed since the sweep was opened: take the tree that the "
+              "sweep was made for, or begin anew, with a folder of its own",
+              body.tree.string());
 }
 
 }  // namespace
@@ -92,8 +92,7 @@ std::shared_ptr<const Sweep::Bodies> Sweep::bodies() const {
     const std::string reason =
         contradiction(loaded->moving, "the tree", loaded->fixed, file_.fixed.tree.string());
     if (!reason.empty()) {
-      throw Error(ErrorCode::kInputInvalid,
-                  fmt::format("{}: {}", file_.moving.tree.string(), reason));
+      throw_error(ErrorCode::kInputInvalid, "{}: {}", file_.moving.tree.string(), reason);
     }
     const Query needs_the_spheres(loaded->fixed, loaded->moving, {.policy = file_.spheres});
     bodies_ = std::move(loaded);
