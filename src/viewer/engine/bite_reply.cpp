@@ -1,5 +1,3 @@
-#include "viewer/engine/bite_reply.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include "answers/occlusion/map_colours.h"
 #include "ist/base/files.h"
 #include "ist/base/throw_error.h"
+#include "viewer/engine/replies.h"
 
 namespace ist::viewer {
 namespace {

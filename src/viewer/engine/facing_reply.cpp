@@ -1,5 +1,3 @@
-#include "viewer/engine/facing_reply.h"
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -9,6 +7,7 @@
 #include "answers/occlusion/bite_direction.h"
 #include "answers/occlusion/sides.h"
 #include "ist/measure/occlusion.h"
+#include "viewer/engine/replies.h"
 
 namespace ist::viewer {
 namespace {

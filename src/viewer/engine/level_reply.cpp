@@ -1,8 +1,7 @@
-#include "viewer/engine/level_reply.h"
-
 #include "ist/base/throw_error.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/tree_parts.h"
+#include "viewer/engine/replies.h"
 
 namespace ist::viewer {
 namespace {
