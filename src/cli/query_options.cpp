@@ -103,11 +103,9 @@ BodyFiles QuestionOptions::body_files() const {
 
 void add_query_options(CLI::App& command, QuestionOptions& options) {
   options.subcommand = command.get_name();
-  command.add_option("FIXED", options.files.fixed, "mesh or tree of the body that stays")
-      ->type_name("FILE")
+  add_file(command, "FIXED", options.files.fixed, "mesh or tree of the body that stays")
       ->required();
-  command.add_option("MOVING", options.files.moving, "mesh or tree of the body that is moved")
-      ->type_name("FILE")
+  add_file(command, "MOVING", options.files.moving, "mesh or tree of the body that is moved")
       ->required();
   command.add_option("--voxel-size", options.files.voxel_size,
                      "edge of a voxel, in mesh units; by default a 500th of the smaller body's "
@@ -125,12 +123,9 @@ void add_query_options(CLI::App& command, QuestionOptions& options) {
       ->check(tolerance());
   command.add_flag("--exact", options.questions.triangle_pairs,
                    "count all pairs of triangles that meet");
-  command
-      .add_option(
-          "--contacts", options.contacts,
-          "write leaf pairs, and the contact points that they are reduced to, at most 32 a pose, "
-          "in fixed coordinates, to this file, by its ending: .jsonl, .csv, .vtp or .ply")
-      ->type_name("FILE");
+  add_file(command, "--contacts", options.contacts,
+           "write leaf pairs, and the contact points that they are reduced to, at most 32 a pose, "
+           "in fixed coordinates, to this file, by its ending: .jsonl, .csv, .vtp or .ply");
   command.add_flag("--fail-if-touching", options.fail_if_touching,
                    "exit code 6 where the bodies touch, or may, or one lies in the other, at any "
                    "pose; 1 where that is unknown");

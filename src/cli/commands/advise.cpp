@@ -178,24 +178,17 @@ void add_advise(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "advise", "Recommend a voxel size for a time or an error, measured on your own meshes");
   const auto options = std::make_shared<AdviseArguments>();
-  command->add_option("FIXED", options->fixed, "mesh of the body that stays")
-      ->type_name("FILE")
-      ->required();
-  command->add_option("MOVING", options->moving, "mesh of the body that is moved")
-      ->type_name("FILE")
-      ->required();
+  add_file(*command, "FIXED", options->fixed, "mesh of the body that stays")->required();
+  add_file(*command, "MOVING", options->moving, "mesh of the body that is moved")->required();
   command->add_option("--budget-us", options->budget,
                       "microseconds for a query of all leaf pairs: recommends the smallest voxels "
                       "whose slowest pose takes at most 80 % of them");
   command->add_option("--error", options->error,
                       "largest distance between surfaces whose voxels touch, in mesh units: "
                       "recommends the largest voxels with which at most 80 % of it was measured");
-  command
-      ->add_option(
-          "--poses", options->poses,
-          "JSON: an array of objects with \"pose\", 16 numbers, column by column; by default a "
-          "straight closing path to the stored pose, or from there to first contact")
-      ->type_name("FILE");
+  add_file(*command, "--poses", options->poses,
+           "JSON: an array of objects with \"pose\", 16 numbers, column by column; by default a "
+           "straight closing path to the stored pose, or from there to first contact");
   command
       ->add_option("--axis", options->axis,
                    "direction in which the moving body leaves the fixed one; by default the "

@@ -129,14 +129,10 @@ void run(BuildArguments options) {
 void add_build(CLI::App& app) {
   CLI::App* command = app.add_subcommand("build", "Make a tree from a mesh, and save it");
   const auto options = std::make_shared<BuildArguments>();
-  command
-      ->add_option("MESH", options->mesh,
-                   fmt::format("{} file; no unit is converted", kMeshFormats))
-      ->type_name("FILE")
+  add_file(*command, "MESH", options->mesh,
+           fmt::format("{} file; no unit is converted", kMeshFormats))
       ->required();
-  command->add_option("-o,--output", options->output, "the tree file to write, .ist")
-      ->type_name("FILE")
-      ->required();
+  add_file(*command, "-o,--output", options->output, "the tree file to write, .ist")->required();
   command->add_option("--voxel-size", options->voxel_size,
                       "edge of a voxel, in mesh units; by default 1/500 of the largest extent");
   command

@@ -92,11 +92,10 @@ void run(const ExportArguments& options) {
   const std::uint32_t count = parts_of(tree).octree.node_count(options.level);
   if (options.json) {
     print_header("export", {{"tree", options.tree}});
-    const nlohmann::ordered_json line{{"file", options.output.filename().string()},
-                                      {"what", options.what},
-                                      {"level", options.level},
-                                      {"count", count}};
-    print_json(line);
+    print_json({{"file", options.output.filename().string()},
+                {"what", options.what},
+                {"level", options.level},
+                {"count", count}});
   } else {
     fmt::print("{}: {} {}\n", options.output.string(), count, options.what);
   }
@@ -110,7 +109,7 @@ void add_export(CLI::App& app) {
       "Write a level of a tree for viewers: .vtp for ParaView, .ply for MeshLab and CloudCompare, "
       ".glb for Blender and browsers");
   const auto options = std::make_shared<ExportArguments>();
-  command->add_option("TREE", options->tree, "tree file")->type_name("FILE")->required();
+  add_file(*command, "TREE", options->tree, "tree file")->required();
   command
       ->add_option("--what", options->what, "cubes; or spheres, as points with an array 'radius'")
       ->required()
@@ -122,10 +121,8 @@ void add_export(CLI::App& app) {
       ->add_option("--spheres", options->spheres,
                    "spheres to write, of slab the balls; by default the tightest that the tree has")
       ->transform(one_of(policy_names()));
-  command
-      ->add_option("-o,--output", options->output,
-                   "file to write; its ending says the format: .vtp or .ply, of voxels also .glb")
-      ->type_name("FILE")
+  add_file(*command, "-o,--output", options->output,
+           "file to write; its ending says the format: .vtp or .ply, of voxels also .glb")
       ->required();
   command
       ->add_option("--unit", options->unit,

@@ -286,16 +286,12 @@ void add_patient_options(CLI::App& command, OcclusionArguments& options) {
                   "body's box, assumed")
       ->type_name("X,Y,Z")
       ->group(group);
-  command
-      .add_option("--labels-fixed", questions.labels_fixed,
-                  "the fixed body's tooth numbers, 0 for no tooth: the mesh as a .vtk or .vtp "
-                  "(FILE:ARRAY), as a .ply with a property label, or as an .obj with groups such "
-                  "as tooth_16; or a text of a number a line, for each triangle or vertex")
-      ->type_name("FILE")
+  add_file(command, "--labels-fixed", questions.labels_fixed,
+           "the fixed body's tooth numbers, 0 for no tooth: the mesh as a .vtk or .vtp "
+           "(FILE:ARRAY), as a .ply with a property label, or as an .obj with groups such "
+           "as tooth_16; or a text of a number a line, for each triangle or vertex")
       ->group(group);
-  command.add_option("--labels-moving", questions.labels_moving, "the moving body's")
-      ->type_name("FILE")
-      ->group(group);
+  add_file(command, "--labels-moving", questions.labels_moving, "the moving body's")->group(group);
   command.add_option("--numbering", options.numbering, "the system of the labels")
       ->transform(one_of({"fdi", "universal"}))
       ->group(group);
@@ -309,11 +305,9 @@ void add_occlusion(CLI::App& app) {
       "Map the distance between two jaws: areas, contact regions, shares, files to see");
   const auto options = std::make_shared<OcclusionArguments>();
   options->files.voxels = BodyFiles::Voxels::kNone;
-  command->add_option("FIXED", options->files.fixed, "mesh or tree of the body that stays")
-      ->type_name("FILE")
+  add_file(*command, "FIXED", options->files.fixed, "mesh or tree of the body that stays")
       ->required();
-  command->add_option("MOVING", options->files.moving, "mesh or tree of the body that is moved")
-      ->type_name("FILE")
+  add_file(*command, "MOVING", options->files.moving, "mesh or tree of the body that is moved")
       ->required();
   command
       ->add_option("-o,--output", options->outputs,

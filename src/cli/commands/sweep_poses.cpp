@@ -109,9 +109,7 @@ Made run_share(const Sweep& sweep, const SweepArguments& options, const Share& s
 void run(const SweepArguments& options, const Sweep& sweep) {
   const Made made = run_share(sweep, options, share_of(options.share));
   if (options.json) {
-    const nlohmann::ordered_json json{
-        {"made", made.made}, {"there", made.there}, {"given_up", made.given_up}};
-    print_json(sweep, json);
+    print_json(sweep, {{"made", made.made}, {"there", made.there}, {"given_up", made.given_up}});
   } else {
     fmt::print("parts   made {}, there before {}, given up {}\n", made.made.size(),
                made.there.size(), made.given_up.size());
@@ -128,9 +126,8 @@ void merge(const SweepArguments& options, const Sweep& sweep) {
     return merge_parts(folder, sweep.layout(), shown_by(bar, "merging parts"));
   }();
   if (options.json) {
-    const nlohmann::ordered_json json{
-        {"rows", merged.rows}, {"missing", merged.missing}, {"given_up", merged.given_up}};
-    print_json(sweep, json);
+    print_json(sweep,
+               {{"rows", merged.rows}, {"missing", merged.missing}, {"given_up", merged.given_up}});
   } else if (merged.whole()) {
     fmt::print("rows    {} in {}\n", merged.rows, (options.folder / "rows.npy").string());
   }
@@ -162,8 +159,7 @@ void add_sweep(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "sweep", "Ask the same at millions of poses, in parts that any process may make");
   const auto options = std::make_shared<SweepArguments>();
-  command->add_option("SWEEP", options->file, "sweep file (.toml): trees, poses and questions")
-      ->type_name("FILE")
+  add_file(*command, "SWEEP", options->file, "sweep file (.toml): trees, poses and questions")
       ->required();
   command
       ->add_option("-o,--output", options->folder, "folder of the parts, made where it is missing")

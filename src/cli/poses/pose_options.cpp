@@ -10,6 +10,7 @@
 
 #include "advise/closing_path.h"
 #include "answers/refusals.h"
+#include "cli/common_options.h"
 #include "ist/base/angles.h"
 #include "ist/base/direction.h"
 #include "ist/base/pose.h"
@@ -110,28 +111,22 @@ void add_pose_options(CLI::App& command, PoseOptions& options, Poses poses) {
   CLI::Option* move =
       command.add_option("--move", options.move, "shift it by x,y,z mesh units, after the turn")
           ->type_name("X,Y,Z");
-  CLI::Option* turn = command
-                          .add_option("--turn", options.turn,
-                                      "turn it by axis,degrees[@x,y,z] about a point, by default "
-                                      "the origin; an axis is x, y, z, "
-                                      "-x, -y, -z, or three numbers")
-                          ->type_name("AXIS,DEGREES");
-  CLI::Option* matrix =
+  CLI::Option* turn =
       command
-          .add_option("--matrix", options.matrix,
-                      "a file of 4 x 4 numbers, row by row: p_fixed = M p_moving; or a rigid "
-                      "transform of ITK "
-                      "(.tfm), which is inverted, since it maps fixed to moving points")
-          ->type_name("FILE");
+          .add_option("--turn", options.turn,
+                      "turn it by axis,degrees[@x,y,z] about a point, by default the origin; an "
+                      "axis is x, y, z, -x, -y, -z, or three numbers")
+          ->type_name("AXIS,DEGREES");
+  CLI::Option* matrix =
+      add_file(command, "--matrix", options.matrix,
+               "a file of 4 x 4 numbers, row by row: p_fixed = M p_moving; or a rigid transform of "
+               "ITK (.tfm), which is inverted, since it maps fixed to moving points");
   move->group(group);
   turn->group(group);
   matrix->group(group)->excludes(move)->excludes(turn);
   if (poses == Poses::kOne) return;
-  command
-      .add_option("--poses", options.poses,
-                  "many poses: JSON, an array of objects with \"pose\", 16 numbers, column by "
-                  "column")
-      ->type_name("FILE")
+  add_file(command, "--poses", options.poses,
+           "many poses: JSON, an array of objects with \"pose\", 16 numbers, column by column")
       ->group(group)
       ->excludes(move)
       ->excludes(turn)
