@@ -17,12 +17,11 @@ using namespace answers;
 namespace {
 
 void add_engine_options(CLI::App& command, QuestionOptions& options) {
-  const std::string group = "Engine, and its times";
+  command.option_defaults()->group("Engine, and its times");
   command
       .add_option("--spheres", options.spheres,
                   "bounds of the nodes; by default the tightest that both bodies have")
-      ->transform(one_of(policy_names()))
-      ->group(group);
+      ->transform(one_of(policy_names()));
   command
       .add_option("--engine", options.engines,
                   "times simd, the fast query of leaf pairs, or reference, the published one; "
@@ -30,37 +29,30 @@ void add_engine_options(CLI::App& command, QuestionOptions& options) {
       ->transform(one_of({kEngineNames.begin(), kEngineNames.end()}))
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->default_str(std::string(kEngineNames.front()))
-      ->group(group);
+      ->default_str(std::string(kEngineNames.front()));
   command
       .add_option("--workers", options.workers,
                   "threads of simd; a second one helps if queries follow each other at once")
       ->check(CLI::Range(1, 2))
-      ->capture_default_str()
-      ->group(group);
+      ->capture_default_str();
   command
       .add_option("--target", options.target,
                   "instruction set of simd, one that ist --version lists; by default IST_TARGET of "
                   "the environment, or the first. All answer alike")
-      ->type_name("NAME")
-      ->group(group);
+      ->type_name("NAME");
   command.add_option("--repeat", options.repeat, "times that each pose is timed; prints --timing")
       ->check(CLI::Range(1, 1000000))
-      ->capture_default_str()
-      ->group(group);
+      ->capture_default_str();
   command
       .add_option("--max-tests", options.questions.max_tests,
                   "stop each question after this number of tests; distance and depth are then "
                   "wider intervals, and touch may be near")
-      ->transform(whole_number("the number of tests"))
-      ->group(group);
-  command
-      .add_flag("--verify", options.verify,
-                "run each engine at each pose once more and check its leaf pairs against the "
-                "guarantee, some 0.1 s a pose; exit code 5 if it is broken")
-      ->group(group);
-  command.add_flag("--timing", options.timing, "print leaf pairs, tests and times too")
-      ->group(group);
+      ->transform(whole_number("the number of tests"));
+  command.add_flag("--verify", options.verify,
+                   "run each engine at each pose once more and check its leaf pairs against the "
+                   "guarantee, some 0.1 s a pose; exit code 5 if it is broken");
+  command.add_flag("--timing", options.timing, "print leaf pairs, tests and times too");
+  command.option_defaults()->group("Options");
 }
 
 }  // namespace

@@ -265,36 +265,32 @@ void add_measure_options(CLI::App& command, OcclusionArguments& options) {
 }
 
 void add_patient_options(CLI::App& command, OcclusionArguments& options) {
-  const std::string group = "The patient; nothing is guessed, and sides are +x and -x by default";
+  command.option_defaults()->group(
+      "The patient; nothing is guessed, and sides are +x and -x by default");
   BiteQuestions& questions = options.questions;
   command
       .add_option("--frame", questions.sides.frame,
                   "lps: +x is the patient's left, +y behind; ras: +x right, +y in front; by "
                   "default as the files say it")
-      ->transform(one_of({"lps", "ras"}))
-      ->group(group);
+      ->transform(one_of({"lps", "ras"}));
   command.add_option("--left", questions.sides.left, "x,y,z: the direction of the patient's left")
-      ->type_name("X,Y,Z")
-      ->group(group);
+      ->type_name("X,Y,Z");
   command
       .add_option("--front", questions.sides.front, "x,y,z: the direction of the patient's front")
-      ->type_name("X,Y,Z")
-      ->group(group);
+      ->type_name("X,Y,Z");
   command
       .add_option("--midline", questions.sides.midline,
                   "x,y,z: a point between left and right; by default the middle of the fixed "
                   "body's box, assumed")
-      ->type_name("X,Y,Z")
-      ->group(group);
+      ->type_name("X,Y,Z");
   add_file(command, "--labels-fixed", questions.labels_fixed,
            "the fixed body's tooth numbers, 0 for no tooth: the mesh as a .vtk or .vtp "
            "(FILE:ARRAY), as a .ply with a property label, or as an .obj with groups such "
-           "as tooth_16; or a text of a number a line, for each triangle or vertex")
-      ->group(group);
-  add_file(command, "--labels-moving", questions.labels_moving, "the moving body's")->group(group);
+           "as tooth_16; or a text of a number a line, for each triangle or vertex");
+  add_file(command, "--labels-moving", questions.labels_moving, "the moving body's");
   command.add_option("--numbering", options.numbering, "the system of the labels")
-      ->transform(one_of({"fdi", "universal"}))
-      ->group(group);
+      ->transform(one_of({"fdi", "universal"}));
+  command.option_defaults()->group("Options");
 }
 
 }  // namespace

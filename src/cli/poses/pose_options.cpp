@@ -107,7 +107,7 @@ std::vector<GivenPose> PoseOptions::poses_named() const {
 }
 
 void add_pose_options(CLI::App& command, PoseOptions& options, Poses poses) {
-  const std::string group = "Pose of the moving body; as stored, where none is named";
+  command.option_defaults()->group("Pose of the moving body; as stored, where none is named");
   CLI::Option* move =
       command.add_option("--move", options.move, "shift it by x,y,z mesh units, after the turn")
           ->type_name("X,Y,Z");
@@ -121,16 +121,15 @@ void add_pose_options(CLI::App& command, PoseOptions& options, Poses poses) {
       add_file(command, "--matrix", options.matrix,
                "a file of 4 x 4 numbers, row by row: p_fixed = M p_moving; or a rigid transform of "
                "ITK (.tfm), which is inverted, since it maps fixed to moving points");
-  move->group(group);
-  turn->group(group);
-  matrix->group(group)->excludes(move)->excludes(turn);
-  if (poses == Poses::kOne) return;
-  add_file(command, "--poses", options.poses,
-           "many poses: JSON, an array of objects with \"pose\", 16 numbers, column by column")
-      ->group(group)
-      ->excludes(move)
-      ->excludes(turn)
-      ->excludes(matrix);
+  matrix->excludes(move)->excludes(turn);
+  if (poses == Poses::kMany) {
+    add_file(command, "--poses", options.poses,
+             "many poses: JSON, an array of objects with \"pose\", 16 numbers, column by column")
+        ->excludes(move)
+        ->excludes(turn)
+        ->excludes(matrix);
+  }
+  command.option_defaults()->group("Options");
 }
 
 ClosingPath find_closing_way(const SphereTree& fixed, const SphereTree& moving,
