@@ -70,7 +70,16 @@ class IST_LOOP_API HandleTable {
 
 static_assert(sizeof(void*) == sizeof(std::uint64_t), "a handle has the size of a pointer");
 
-// The type T of an object declares `using Handle`, its opaque C type; kKind; kUse; kName.
+/// The base of an object's type: the opaque C type of its handle, its kind and its use.
+template <typename CHandle, HandleKind kOfKind, HandleUse kOfUse>
+struct OfHandle {
+  using Handle = CHandle;
+  static constexpr HandleKind kKind = kOfKind;
+  static constexpr HandleUse kUse = kOfUse;
+  /// The argument's name in C, and the object's in messages.
+  static constexpr const char* kName = std::array{
+      "mesh", "tree", "query", "servo", "world", "sweep"}[static_cast<std::size_t>(kOfKind) - 1];
+};
 
 template <typename Handle>
 [[nodiscard]] std::uint64_t number_of(const Handle* handle) noexcept {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <span>
 
 #include "c/objects.h"
@@ -108,9 +107,7 @@ ist_status ist_contact_sums_wrench(const ist_contact_sums* sums, double stiffnes
     call.need("force", force);
     call.need("torque", torque);
     const ist_contact_sums known = read_sized(call, "sums", sums);
-    if (!std::isfinite(stiffness)) {
-      call.fail(IST_ARGUMENT_INVALID, "stiffness is {}: pass a finite number", stiffness);
-    }
+    check_finite(call, "stiffness", stiffness);
     if (call.status() != IST_OK) return;
     const ist::ScopedFloatEnvironment environment;
     for (int i = 0; i < 3; ++i) {
@@ -125,9 +122,7 @@ ist_status ist_query_distance(ist_query* query, const double pose[16], double to
   return guarded(__func__, [&](Call& call) {
     clear_sized(call, "result", result);
     call.need("pose", pose);
-    if (!(tolerance >= 0)) {
-      call.fail(IST_ARGUMENT_INVALID, "tolerance is {}: pass a number of at least 0", tolerance);
-    }
+    check_tolerance(call, "tolerance", tolerance);
     const ist::Budget allowed = read_budget(call, budget);
     const Held<QueryObject> held(call, "query", query);
     if (!held) return;

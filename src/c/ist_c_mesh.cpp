@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <span>
 
@@ -91,7 +90,7 @@ ist_status ist_mesh_create_float(const float* vertices, size_t vertex_count,
 ist_status ist_mesh_read(const char* path, const ist_progress* progress,
                          ist_mesh** mesh) IST_NOEXCEPT {
   return read_object<Mesh>(__func__, path, progress, mesh,
-                           [](const char* file) { return Mesh{ist::read_mesh(file)}; });
+                           [](const char* file) { return ist::read_mesh(file); });
 }
 
 ist_status ist_mesh_get_info(const ist_mesh* mesh, const ist_progress* progress,

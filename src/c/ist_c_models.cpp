@@ -15,6 +15,6 @@ ist_status ist_jaw_create(int32_t jaw, uint64_t seed, ist_mesh** mesh) IST_NOEXC
     }
     if (call.status() != IST_OK) return;
     const ist::Jaw made = jaw == IST_JAW_UPPER ? ist::Jaw::kUpper : ist::Jaw::kLower;
-    give(call, std::make_unique<Mesh>(Mesh{ist::make_jaw(made, seed)}), mesh);
+    give(call, std::make_unique<Mesh>(ist::make_jaw(made, seed)), mesh);
   });
 }

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <vector>
 
 #include "c/follower.h"
@@ -12,7 +11,6 @@ namespace {
 
 constexpr std::int32_t kAllQuestions = IST_ASK_INTERSECTS | IST_ASK_LEAF_PAIRS | IST_ASK_DISTANCE |
                                        IST_ASK_CONTACTS | IST_ASK_PENETRATION;
-constexpr std::int32_t kMostThreads = 1024;
 
 struct RowsAsked {
   RowQuestions questions;
@@ -27,19 +25,9 @@ RowsAsked read_rows_options(Call& call, const ist_rows_options* given) {
     call.fail(IST_ARGUMENT_INVALID, "options->questions is {}: pass a sum of IST_ASK_...",
               known.questions);
   }
-  if (known.threads < 0 || known.threads > kMostThreads) {
-    call.fail(IST_ARGUMENT_INVALID,
-              "options->threads is {}: pass 1 to {}, or 0 for one for each core", known.threads,
-              kMostThreads);
-  }
-  if (!(known.tolerance >= 0)) {
-    call.fail(IST_ARGUMENT_INVALID, "options->tolerance is {}: pass a number of at least 0",
-              known.tolerance);
-  }
-  if (!std::isfinite(known.stiffness)) {
-    call.fail(IST_ARGUMENT_INVALID, "options->stiffness is {}: pass a finite number",
-              known.stiffness);
-  }
+  check_threads(call, "options->threads", known.threads);
+  check_tolerance(call, "options->tolerance", known.tolerance);
+  check_finite(call, "options->stiffness", known.stiffness);
   RowsAsked asked;
   RowQuestions& questions = asked.questions;
   questions.intersects = (known.questions & IST_ASK_INTERSECTS) != 0;

@@ -12,12 +12,7 @@
 namespace ist::capi {
 namespace {
 
-struct Servo {
-  using Handle = ist_servo;
-  static constexpr HandleKind kKind = HandleKind::kServo;
-  static constexpr HandleUse kUse = HandleUse::kAlone;
-  static constexpr const char* kName = "servo";
-
+struct Servo : OfHandle<ist_servo, HandleKind::kServo, HandleUse::kAlone> {
   Servo(BuiltScene built, const ServoCallbackOptions& options)
       : scene(std::move(built)), callback(*scene.simulation, options) {}
 

@@ -1,5 +1,4 @@
 #include <cstring>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -11,12 +10,7 @@
 namespace ist::capi {
 namespace {
 
-struct SweepObject {
-  using Handle = ist_sweep;
-  static constexpr HandleKind kKind = HandleKind::kSweep;
-  static constexpr HandleUse kUse = HandleUse::kShared;
-  static constexpr const char* kName = "sweep";
-
+struct SweepObject : OfHandle<ist_sweep, HandleKind::kSweep, HandleUse::kShared> {
   explicit SweepObject(const char* path) : sweep(path) {}
   Sweep sweep;
 };
@@ -128,13 +122,9 @@ ist_status ist_sweep_run_part(const ist_sweep* sweep, const char* folder, uint64
                               int32_t threads, const ist_progress* progress,
                               ist_sweep_part* result) IST_NOEXCEPT {
   return guarded(__func__, [&](Call& call) {
-    constexpr std::int32_t kMostThreads = 1024;
     clear_sized(call, "result", result);
     call.need("folder", folder);
-    if (threads < 0 || threads > kMostThreads) {
-      call.fail(IST_ARGUMENT_INVALID, "threads is {}: pass 1 to {}, or 0 for one for each core",
-                threads, kMostThreads);
-    }
+    check_threads(call, "threads", threads);
     const Follower follower = read_follower(call, progress);
     const Held<SweepObject> held(call, "sweep", sweep);
     if (!held) return;

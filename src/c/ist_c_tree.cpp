@@ -88,7 +88,7 @@ ist_status ist_tree_build(const ist_mesh* mesh, const ist_build_options* options
     ist::Progress progress;
     std::unique_ptr<Tree> made;
     const bool whole = followed(follower, progress, stages_of(build), [&] {
-      made = std::make_unique<Tree>(Tree{ist::build_tree(held->mesh, build, nullptr, &progress)});
+      made = std::make_unique<Tree>(ist::build_tree(held->mesh, build, nullptr, &progress));
     });
     whole ? give(call, std::move(made), tree) : cancelled(call);
   });
@@ -97,7 +97,7 @@ ist_status ist_tree_build(const ist_mesh* mesh, const ist_build_options* options
 ist_status ist_tree_load(const char* path, const ist_progress* progress,
                          ist_tree** tree) IST_NOEXCEPT {
   return read_object<Tree>(__func__, path, progress, tree,
-                           [](const char* file) { return Tree{ist::read_tree(file)}; });
+                           [](const char* file) { return ist::read_tree(file); });
 }
 
 ist_status ist_tree_save(const ist_tree* tree, const char* path,
@@ -141,7 +141,7 @@ ist_status ist_tree_from_memory(const void* memory, size_t bytes, const ist_prog
     call.need_array("memory", memory, bytes);
     make_object<Tree>(call, progress, tree, [&] {
       return std::make_unique<Tree>(
-          Tree{ist::tree_from_bytes({static_cast<const std::byte*>(memory), bytes})});
+          ist::tree_from_bytes({static_cast<const std::byte*>(memory), bytes}));
     });
   });
 }
@@ -155,7 +155,7 @@ ist_status ist_tree_get_mesh(const ist_tree* tree, ist_mesh** mesh) IST_NOEXCEPT
     if (kept == nullptr) {
       return call.fail(IST_TRIANGLES_MISSING, "the tree keeps no triangles: build it with them");
     }
-    give(call, std::make_unique<Mesh>(Mesh{*kept}), mesh);
+    give(call, std::make_unique<Mesh>(*kept), mesh);
   });
 }
 

@@ -11,12 +11,7 @@ namespace {
 
 static_assert(IST_MOST_BODIES == kMostBodies);
 
-struct WorldObject {
-  using Handle = ist_world;
-  static constexpr HandleKind kKind = HandleKind::kWorld;
-  static constexpr HandleUse kUse = HandleUse::kAlone;
-  static constexpr const char* kName = "world";
-
+struct WorldObject : OfHandle<ist_world, HandleKind::kWorld, HandleUse::kAlone> {
   explicit WorldObject(const WorldOptions& options) : world(options) {}
   World world;
 };
@@ -108,11 +103,6 @@ std::optional<WorldQuestion::Kind> kind_of(std::int32_t ask) {
     default:
       return std::nullopt;
   }
-}
-
-void check_tolerance(Call& call, const char* name, double tolerance) {
-  if (tolerance >= 0) return;
-  call.fail(IST_ARGUMENT_INVALID, "{} is {}: pass a number of at least 0", name, tolerance);
 }
 
 WorldQuestion read_question(Call& call, const ist_world_question* given) {

@@ -1,6 +1,7 @@
 #include "c/objects.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "ist/base/pose.h"
 
@@ -49,6 +50,23 @@ Budget read_budget(Call& call, const ist_budget* given) {
     }
   }
   return budget;
+}
+
+void check_tolerance(Call& call, const char* name, double tolerance) {
+  if (tolerance >= 0) return;
+  call.fail(IST_ARGUMENT_INVALID, "{} is {}: pass a number of at least 0", name, tolerance);
+}
+
+void check_finite(Call& call, const char* name, double number) {
+  if (std::isfinite(number)) return;
+  call.fail(IST_ARGUMENT_INVALID, "{} is {}: pass a finite number", name, number);
+}
+
+void check_threads(Call& call, const char* name, std::int32_t threads) {
+  constexpr std::int32_t kMost = 1024;
+  if (threads >= 0 && threads <= kMost) return;
+  call.fail(IST_ARGUMENT_INVALID, "{} is {}: pass 1 to {}, or 0 for one for each core", name,
+            threads, kMost);
 }
 
 void not_prepared(Call& call) {

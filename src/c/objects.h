@@ -16,30 +16,18 @@
 /// functions on them share.
 namespace ist::capi {
 
-struct Mesh {
-  using Handle = ist_mesh;
-  static constexpr HandleKind kKind = HandleKind::kMesh;
-  static constexpr HandleUse kUse = HandleUse::kShared;
-  static constexpr const char* kName = "mesh";
-
+struct Mesh : OfHandle<ist_mesh, HandleKind::kMesh, HandleUse::kShared> {
+  Mesh() = default;
+  explicit Mesh(TriangleMesh made) : mesh(std::move(made)) {}
   TriangleMesh mesh;
 };
 
-struct Tree {
-  using Handle = ist_tree;
-  static constexpr HandleKind kKind = HandleKind::kTree;
-  static constexpr HandleUse kUse = HandleUse::kShared;
-  static constexpr const char* kName = "tree";
-
+struct Tree : OfHandle<ist_tree, HandleKind::kTree, HandleUse::kShared> {
+  explicit Tree(SphereTree made) : tree(std::move(made)) {}
   SphereTree tree;
 };
 
-struct QueryObject {
-  using Handle = ist_query;
-  static constexpr HandleKind kKind = HandleKind::kQuery;
-  static constexpr HandleUse kUse = HandleUse::kAlone;
-  static constexpr const char* kName = "query";
-
+struct QueryObject : OfHandle<ist_query, HandleKind::kQuery, HandleUse::kAlone> {
   /// @param manifold_options empty: the query gives no contacts
   QueryObject(const SphereTree& fixed, const SphereTree& moving, const QueryOptions& options,
               const std::optional<ManifoldOptions>& manifold_options)
@@ -98,6 +86,12 @@ struct CQueryOptions {
 };
 /// Converts a caller's options of a query (ist_c_query.cpp); NULL leaves the defaults.
 [[nodiscard]] CQueryOptions read_query_options(Call& call, const ist_query_options* given);
+
+/// Fails for a negative number and for NaN, for a number that is not finite, and for a number of
+/// threads below 0 or above 1024.
+void check_tolerance(Call& call, const char* name, double tolerance);
+void check_finite(Call& call, const char* name, double number);
+IST_LOOP_API void check_threads(Call& call, const char* name, std::int32_t threads);
 
 /// Fails as a query that was created without contacts does.
 void not_prepared(Call& call);
