@@ -1,5 +1,3 @@
-#include "import/gltf_check.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "import/format_checks.h"
 #include "import/placed_polygons.h"
 #include "ist/base/printable.h"
 

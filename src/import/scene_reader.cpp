@@ -1,5 +1,3 @@
-#include "import/scene_reader.h"
-
 #include <assimp/config.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
@@ -13,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "import/gltf_check.h"
+#include "import/format_checks.h"
+#include "import/readers.h"
 #include "import/scene_format.h"
 #include "import/side_files.h"
-#include "import/xml_check.h"
 #include "ist/base/printable.h"
 #include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/import/import_message.h"

@@ -1,5 +1,3 @@
-#include "import/threemf_reader.h"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -13,6 +11,7 @@
 #include <system_error>
 #include <vector>
 
+#include "import/readers.h"
 #include "import/scene_format.h"
 #include "import/slicer_parts.h"
 #include "import/zip_parts.h"
