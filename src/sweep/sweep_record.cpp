@@ -1,7 +1,6 @@
 #include "sweep/sweep_record.h"
 
 #include <nlohmann/json.hpp>
-#include <string_view>
 
 #include "ist/base/files.h"
 #include "ist/base/throw_error.h"
