@@ -1,5 +1,3 @@
-#include "answers/occlusion/bite_csv.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "answers/occlusion/bite_files.h"
 #include "answers/occlusion/bite_hints.h"
 #include "answers/refusals.h"
 

@@ -1,9 +1,8 @@
-#include "cli/commands/advise_report.h"
-
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
+#include "cli/commands/reports.h"
 #include "cli/terminal.h"
 #include "ist/tree/sphere_tree.h"
 

@@ -11,7 +11,7 @@
 
 #include "answers/refusals.h"
 #include "cli/commands/commands.h"
-#include "cli/commands/run_report.h"
+#include "cli/commands/reports.h"
 #include "cli/common_options.h"
 #include "cli/exit_code.h"
 #include "cli/interruption.h"

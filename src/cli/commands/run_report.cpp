@@ -1,11 +1,10 @@
-#include "cli/commands/run_report.h"
-
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "cli/commands/reports.h"
 #include "cli/terminal.h"
 
 namespace ist::cli {

@@ -14,7 +14,6 @@
 #include "cli/load_bodies.h"
 #include "cli/page/page_blocks.h"
 #include "cli/page/page_file.h"
-#include "cli/page/recording_block.h"
 #include "cli/poses/pose_options.h"
 #include "ist/base/files.h"
 

@@ -4,8 +4,7 @@
 
 #include "answers/occlusion/bite_hints.h"
 #include "answers/occlusion/bite_numbers.h"
-#include "cli/occlusion/html/bite_figures.h"
-#include "cli/occlusion/html/html_tables.h"
+#include "cli/occlusion/html/html_parts.h"
 #include "cli/occlusion/html/html_text.h"
 
 namespace ist::cli {

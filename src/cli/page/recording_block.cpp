@@ -1,5 +1,3 @@
-#include "cli/page/recording_block.h"
-
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>

@@ -7,7 +7,7 @@
 
 #include "answers/formats/glb_writer.h"
 #include "answers/json_parts.h"
-#include "answers/occlusion/bite_json.h"
+#include "answers/occlusion/bite_files.h"
 #include "answers/occlusion/bite_maker.h"
 #include "answers/occlusion/bite_surfaces.h"
 #include "answers/occlusion/map_colours.h"

@@ -1,5 +1,3 @@
-#include "cli/occlusion/html/bite_figures.h"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -8,6 +6,7 @@
 
 #include "answers/occlusion/map_colours.h"
 #include "cli/occlusion/bite_view.h"
+#include "cli/occlusion/html/html_parts.h"
 #include "cli/occlusion/html/html_text.h"
 #include "cli/occlusion/map_picture.h"
 #include "ist/base/parallel.h"
