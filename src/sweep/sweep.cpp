@@ -48,7 +48,7 @@ SweepIdentity identity_of(const SweepFile& file) {
   const std::string text =
       fmt::format("ist sweep 1\nfixed {}\nmoving {}\nposes {}\n{}\n", file.fixed.hash,
                   file.moving.hash, file.poses->identity(), questions_text(file));
-  ContentHash hash;
+  Checksum hash;
   hash.add(text.data(), text.size());
   return {hash.text(), file.poses->count(), file.rows_per_part};
 }
@@ -155,7 +155,7 @@ Sweep::Outcome Sweep::run_part(const SweepFolder& folder, std::uint64_t part, st
   const auto begin = std::chrono::steady_clock::now();
   const std::shared_ptr<const Bodies> loaded = bodies();
   OutputFile rows(folder.part_file(part)), record(folder.record_file(part));
-  ContentHash hash;
+  Checksum hash;
   const auto write = [&](const void* data, std::size_t bytes) {
     rows.write(data, bytes);
     hash.add(data, bytes);
