@@ -1,7 +1,5 @@
 #include "cli/query_options.h"
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
@@ -59,8 +57,8 @@ void add_engine_options(CLI::App& command, QuestionOptions& options) {
 
 void QuestionOptions::check() const {
   for (const std::string& name : engines) {
-    refuse_if(std::count(engines.begin(), engines.end(), name) > 1, "--engine",
-              fmt::format("{} is named twice", name));
+    refuse_if(std::count(engines.begin(), engines.end(), name) > 1, "--engine", "{} is named twice",
+              name);
   }
   refuse_if(questions.max_tests && verify, "--max-tests",
             "contradicts --verify, which checks complete answers");

@@ -44,8 +44,8 @@ void require_size(const Bodies& bodies, const Bite& bite) {
         std::tuple(&bodies.moving, &bodies.moving_name, "--unit-moving")}) {
     const double size = largest_extent(box_of(*tree)) / bite.units_per_mm;
     refuse_if(!(size >= kLeast && size <= kLargest), option,
-              fmt::format("{} would be {} large, and jaws are 1 to 1000 mm: tell its unit", *name,
-                          BiteNumbers::in_millimetres(size)));
+              "{} would be {} large, and jaws are 1 to 1000 mm: tell its unit", *name,
+              BiteNumbers::in_millimetres(size));
   }
 }
 
@@ -75,9 +75,8 @@ OcclusionOptions options_of(const Bite& bite) {
 
 void require_in_region(const Bite& bite, const BiteBody& body, const std::string& name) {
   if (!bite.region || body.surface.total_area > 0) return;
-  refuse_if(true, "--region",
-            fmt::format("no triangle of {} has its centroid in {}: the body lies in {}", name,
-                        box_words(*bite.region), box_words(body.box())));
+  refuse_if(true, "--region", "no triangle of {} has its centroid in {}: the body lies in {}", name,
+            box_words(*bite.region), box_words(body.box()));
 }
 
 // Returns the area of each limit of the preset, in its order.

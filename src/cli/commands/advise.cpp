@@ -47,8 +47,8 @@ void check(const AdviseArguments& options) {
   refuse_if(options.budget.has_value() == options.error.has_value(), "--budget-us, --error",
             "give one of them");
   const auto positive = [](const char* name, const std::optional<double>& value, const char* unit) {
-    refuse_if(value && !(*value > 0 && std::isfinite(*value)), name,
-              fmt::format("give a positive number of {}", unit));
+    refuse_if(value && !(*value > 0 && std::isfinite(*value)), name, "give a positive number of {}",
+              unit);
   };
   positive("--budget-us", options.budget, "microseconds");
   positive("--error", options.error, "mesh units");
@@ -110,8 +110,8 @@ void run(const AdviseArguments& options) {
   CheckedMesh fixed_mesh = load(options.fixed), moving_mesh = load(options.moving);
   const auto refuse_other = [&](const char* what, auto of_fixed, auto of_moving) {
     refuse_if(contradict(of_fixed, of_moving), options.moving.string(),
-              fmt::format("its {0} is {1}, and the {0} of {2} is {3}: export both in one {0}", what,
-                          to_string(of_moving), options.fixed.string(), to_string(of_fixed)));
+              "its {0} is {1}, and the {0} of {2} is {3}: export both in one {0}", what,
+              to_string(of_moving), options.fixed.string(), to_string(of_fixed));
   };
   refuse_other("frame", fixed_mesh.mesh.frame, moving_mesh.mesh.frame);
   refuse_other("unit", fixed_mesh.mesh.unit, moving_mesh.mesh.unit);

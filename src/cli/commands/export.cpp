@@ -46,7 +46,7 @@ double metres_of(const SphereTree& tree, FileFormat format, const ExportArgument
   const LengthUnit stored = tree.source().unit;
   const LengthUnit named = options.unit ? *length_unit(*options.unit) : LengthUnit::kUnknown;
   refuse_if(stored != LengthUnit::kUnknown && named != LengthUnit::kUnknown && stored != named,
-            "--unit", fmt::format("the tree holds {}: leave it out", to_string(stored)));
+            "--unit", "the tree holds {}: leave it out", to_string(stored));
   const LengthUnit unit = stored != LengthUnit::kUnknown ? stored : named;
   if (unit != LengthUnit::kUnknown) return metres_per_unit(unit);
   if (format == FileFormat::kGlb) fmt::print(stderr, "unit: mm (assumed); --unit names another\n");
@@ -86,8 +86,7 @@ void run(const ExportArguments& options) {
             "goes with a .glb, which is in metres; .vtp and .ply keep the mesh's unit");
   refuse_to_overwrite(options.output, {options.tree});
   const SphereTree tree = read_tree(options.tree);
-  refuse_if(options.level > tree.depth(), "--level",
-            fmt::format("the tree has levels 0 to {}", tree.depth()));
+  refuse_if(options.level > tree.depth(), "--level", "the tree has levels 0 to {}", tree.depth());
   (options.what == "voxels" ? write_voxels : write_spheres)(tree, format, options);
   const std::uint32_t count = parts_of(tree).octree.node_count(options.level);
   if (options.json) {

@@ -62,8 +62,8 @@ std::vector<std::string> preset_names() {
 }
 
 void require_length(double length, const std::string& option) {
-  refuse_if(!(length > 0) || !std::isfinite(length), option,
-            fmt::format("{} is no length: give more than 0", length));
+  refuse_if(!(length > 0) || !std::isfinite(length), option, "{} is no length: give more than 0",
+            length);
 }
 
 std::optional<Eigen::AlignedBox3d> region_of(const std::string& text) {
@@ -87,8 +87,8 @@ BiteQuestions questions_of(const OcclusionArguments& options) {
                                    [&](const Preset& each) { return each.name == options.preset; });
   questions.preset = &*preset;
   refuse_if(questions.reach < 1e-3 * preset->micrometres.back(), "--reach",
-            fmt::format("{} mm is less than the preset's largest limit, {:g} µm", questions.reach,
-                        preset->micrometres.back()));
+            "{} mm is less than the preset's largest limit, {:g} µm", questions.reach,
+            preset->micrometres.back());
   questions.region = region_of(options.region);
   const bool labels = !questions.labels_fixed.empty() || !questions.labels_moving.empty();
   refuse_if(labels && options.numbering.empty(), "--numbering",
@@ -123,8 +123,7 @@ std::vector<Output> outputs_of(const OcclusionArguments& options) {
     refuse_to_overwrite(file, {options.files.fixed, options.files.moving, options.pose.matrix,
                                label_source(options.questions.labels_fixed).file,
                                label_source(options.questions.labels_moving).file});
-    refuse_if(!names.insert(plain(file)).second, "-o",
-              fmt::format("{} is named twice", file.string()));
+    refuse_if(!names.insert(plain(file)).second, "-o", "{} is named twice", file.string());
     open = open || format == FileFormat::kPly || format == FileFormat::kGlb;
     surface = surface || format == FileFormat::kVtp;
     table = table || format == FileFormat::kCsv;

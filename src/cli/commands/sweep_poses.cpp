@@ -42,15 +42,13 @@ Share share_of(const std::string& text) {
   const auto number = [&](const std::string& digits) -> std::uint64_t {
     const bool plain = !digits.empty() && digits.size() <= 9 &&
                        digits.find_first_not_of("0123456789") == std::string::npos;
-    refuse_if(!plain, "--share",
-              fmt::format("{} is no share: give k/N, two whole numbers, k from 0 to N - 1", text));
+    refuse_if(!plain, "--share", "{} is no share: give k/N, two whole numbers, k from 0 to N - 1",
+              text);
     return std::stoull(digits);
   };
-  refuse_if(slash == std::string::npos, "--share",
-            fmt::format("{} is no share: give k/N, such as 0/4", text));
+  refuse_if(slash == std::string::npos, "--share", "{} is no share: give k/N, such as 0/4", text);
   const Share share{number(text.substr(0, slash)), number(text.substr(slash + 1))};
-  refuse_if(share.first >= share.step, "--share",
-            fmt::format("{} is no share: k is from 0 to N - 1", text));
+  refuse_if(share.first >= share.step, "--share", "{} is no share: k is from 0 to N - 1", text);
   return share;
 }
 

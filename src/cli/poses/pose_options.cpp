@@ -76,7 +76,7 @@ Eigen::Vector3d axis_named(const std::string& word, const std::string& option) {
   const std::string letter =
       CLI::detail::to_lower(word.substr(minus || word.starts_with('+') ? 1 : 0));
   refuse_if(letter != "x" && letter != "y" && letter != "z", option,
-            fmt::format("{} is no axis: give x, y, z, -x, -y or -z", word));
+            "{} is no axis: give x, y, z, -x, -y or -z", word);
   Eigen::Vector3d axis(0, 0, 0);
   axis[letter[0] - 'x'] = minus ? -1 : 1;
   return axis;
@@ -146,9 +146,9 @@ ClosingPath find_closing_way(const SphereTree& fixed, const SphereTree& moving,
   Query exact(fixed, moving);
   const std::optional<ClosingPath> path = find_closing_path(exact, direction);
   refuse_if(!path, "--poses",
-            fmt::format("needed, because the bodies do not touch where they are stored, nor when "
-                        "the moving one goes from there along {}: give poses at which they do",
-                        name(-direction.sign)));
+            "needed, because the bodies do not touch where they are stored, nor when "
+            "the moving one goes from there along {}: give poses at which they do",
+            name(-direction.sign));
   fmt::print(stderr,
              "{} poses: opening towards {}, from {:.4g} to {:.4g}; first contact at {:.6g}\n",
              kClosingPoses, name(direction.sign), path->begin, path->end, path->first_contact);
