@@ -73,7 +73,7 @@ NpyPoses::NpyPoses(const std::filesystem::path& file)
   const NpyDoubles array = read_npy_header(file_);
   if (array.shape.size() != 3 || array.shape[1] != 4 || array.shape[2] != 4) {
     throw_error(ErrorCode::kInputInvalid, "{}: its shape is ({}): write poses of shape (N, 4, 4)",
-                file.string(), fmt::join(array.shape, ", "));
+                file.string(), fmt::format("{}", fmt::join(array.shape, ", ")));
   }
   count_ = array.shape[0];
   offset_ = array.offset;
