@@ -7,9 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "answers/answer.h"
 #include "cli/terminal.h"
 #include "ist/base/counted.h"
 

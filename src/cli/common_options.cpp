@@ -55,6 +55,11 @@ CLI::Validator one_of(const std::vector<std::string>& words) {
 
 CLI::Validator unit_name() { return one_of({"mm", "m", "inch", "um", "µm"}); }
 
+CLI::Option* add_file(CLI::App& command, const std::string& name, std::filesystem::path& file,
+                      const std::string& help) {
+  return command.add_option(name, file, help)->type_name("FILE");
+}
+
 void add_example(CLI::App& command, const std::string& example) {
   command.footer(example + "\n" + command.get_parent()->get_footer());
 }

@@ -23,6 +23,10 @@ namespace ist::cli {
 /// Accepts the name of a unit in any case. For Option::transform().
 [[nodiscard]] CLI::Validator unit_name();
 
+/// Adds an option or an argument that names a file.
+CLI::Option* add_file(CLI::App& command, const std::string& name, std::filesystem::path& file,
+                      const std::string& help);
+
 /// Adds an example to the end of a subcommand's help, before the common footer.
 void add_example(CLI::App& command, const std::string& example);
 

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "answers/formats/csv_writer.h"
 #include "answers/formats/format.h"

@@ -6,10 +6,8 @@
 #include <exception>
 #include <memory>
 #include <new>
-#include <optional>
 #include <sstream>
 #include <string>
-#include <string_view>
 #include <system_error>
 #include <vector>
 

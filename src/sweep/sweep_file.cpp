@@ -15,7 +15,6 @@
 #include "loop/scene/table_reader.h"
 #include "loop/scene/toml_document.h"
 #include "sweep/npy_file.h"
-#include "sweep/pose_source.h"
 
 namespace ist {
 namespace {

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "answers/occlusion/bite_direction.h"
 #include "answers/occlusion/bite_numbers.h"
@@ -178,8 +176,8 @@ std::optional<std::string> warning_of(const Bite& bite) {
       std::min(bite.fixed.box().sizes().maxCoeff(), bite.moving.box().sizes().maxCoeff());
   if (!maps_nothing(bite.fixed) || !maps_nothing(bite.moving) || apart <= 0.5 * smaller) return {};
   return fmt::format(
-      "The scans are {} apart: they are probably not in one coordinate system. Register "
-      "them first, or give --matrix.",
+      "The scans are {} apart: they are probably not in one coordinate system. Register them "
+      "first, or give --matrix.",
       numbers.millimetres(apart));
 }
 
@@ -209,8 +207,7 @@ std::optional<std::string> hint_of(const Bite& bite) {
 std::string region_words(const Bite& bite) {
   return fmt::format(
       "region: areas, contacts, shares, depths of vertices and the deepest point are of the "
-      "triangles "
-      "with their centroid in {}; all else is of the whole bodies",
+      "triangles with their centroid in {}; all else is of the whole bodies",
       box_words(*bite.region));
 }
 

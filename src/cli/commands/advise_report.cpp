@@ -1,9 +1,8 @@
-#include "cli/commands/advise_report.h"
-
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
+#include "cli/commands/reports.h"
 #include "cli/terminal.h"
 #include "ist/tree/sphere_tree.h"
 
@@ -12,15 +11,14 @@ namespace ist::cli {
 void print_json(const VoxelAdvice& advice) {
   for (std::size_t i = 0; i < advice.measured.size(); ++i) {
     const SizeMeasure& size = advice.measured[i];
-    const nlohmann::ordered_json line{{"voxel_size", size.voxel_size},
-                                      {"error", size.error},
-                                      {"resolution", size.resolution},
-                                      {"microseconds_slowest", size.slowest_query},
-                                      {"hertz", 1e6 / size.slowest_query},
-                                      {"build_milliseconds", size.build_milliseconds},
-                                      {"memory", size.bytes},
-                                      {"recommended", advice.recommended == i}};
-    print_json(line);
+    print_json({{"voxel_size", size.voxel_size},
+                {"error", size.error},
+                {"resolution", size.resolution},
+                {"microseconds_slowest", size.slowest_query},
+                {"hertz", 1e6 / size.slowest_query},
+                {"build_milliseconds", size.build_milliseconds},
+                {"memory", size.bytes},
+                {"recommended", advice.recommended == i}});
   }
 }
 

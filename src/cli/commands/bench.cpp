@@ -154,10 +154,10 @@ void add_bench(CLI::App& app) {
   CLI::App* command = app.add_subcommand("bench", "Time every way to ask on this machine");
   const auto options = std::make_shared<BenchArguments>();
   auto& [files, poses, seconds, json] = *options;
-  command->add_option("FIXED", files.fixed, "body that stays; by default a jaw")->type_name("FILE");
-  command->add_option("MOVING", files.moving, "body that is moved")->type_name("FILE");
+  add_file(*command, "FIXED", files.fixed, "body that stays; by default a jaw");
+  add_file(*command, "MOVING", files.moving, "body that is moved");
   command->add_option("--voxel-size", files.voxel_size, "mesh units")->check(CLI::PositiveNumber);
-  command->add_option("--poses", poses, "JSON file; by default 12 of a closing")->type_name("FILE");
+  add_file(*command, "--poses", poses, "JSON file; by default 12 of a closing");
   command->add_option("--seconds", seconds, "time for all turns")->capture_default_str();
   add_units_and_frame(*command, files);
   add_max_memory(*command, files.max_memory);

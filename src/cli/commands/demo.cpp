@@ -75,17 +75,16 @@ Rows ask(Engine& engine) {
 
 void print_rows_json(const Engine& engine, SpherePolicy policy, double size, const Rows& rows) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const nlohmann::ordered_json line{{"voxel_size", size},
-                                      {"spheres", to_string(policy)},
-                                      {"engine", engine.name()},
-                                      {"target", engine.target()},
-                                      {"workers", engine.workers()},
-                                      {"displacement", kClosing[i]},
-                                      {"leaf_pairs", rows[i].result.leaf_pairs},
-                                      {"sphere_tests", rows[i].result.sphere_tests},
-                                      {"microseconds_median", rows[i].microseconds},
-                                      {"hertz", 1e6 / rows[i].microseconds}};
-    print_json(line);
+    print_json({{"voxel_size", size},
+                {"spheres", to_string(policy)},
+                {"engine", engine.name()},
+                {"target", engine.target()},
+                {"workers", engine.workers()},
+                {"displacement", kClosing[i]},
+                {"leaf_pairs", rows[i].result.leaf_pairs},
+                {"sphere_tests", rows[i].result.sphere_tests},
+                {"microseconds_median", rows[i].microseconds},
+                {"hertz", 1e6 / rows[i].microseconds}});
   }
 }
 

@@ -51,7 +51,7 @@ double metres_of(const SphereTree& tree, FileFormat format, const ExportArgument
   const LengthUnit stored = tree.source().unit;
   const LengthUnit named = options.unit ? *length_unit(*options.unit) : LengthUnit::kUnknown;
   refuse_if(stored != LengthUnit::kUnknown && named != LengthUnit::kUnknown && stored != named,
-            "--unit", fmt::format("the tree holds {}: leave it out", to_string(stored)));
+            "--unit", "the tree holds {}: leave it out", to_string(stored));
   const LengthUnit unit = stored != LengthUnit::kUnknown ? stored : named;
   if (unit != LengthUnit::kUnknown) return metres_per_unit(unit);
   if (format == FileFormat::kGlb) fmt::print(stderr, "unit: mm (assumed); --unit names another\n");
@@ -97,8 +97,7 @@ void run(const ExportArguments& options) {
             "goes with a .glb, which is in metres; .vtp and .ply keep the mesh's unit");
   check_output(options.output, {options.tree});
   const SphereTree tree = read_tree(options.tree);
-  refuse_if(options.level > tree.depth(), "--level",
-            fmt::format("the tree has levels 0 to {}", tree.depth()));
+  refuse_if(options.level > tree.depth(), "--level", "the tree has levels 0 to {}", tree.depth());
   {
     ProgressBar progress;
     (options.what == "voxels" ? write_voxels : write_spheres)(tree, format, options, progress);
@@ -106,11 +105,10 @@ void run(const ExportArguments& options) {
   const std::uint32_t count = parts_of(tree).octree.node_count(options.level);
   if (options.json) {
     print_header("export", {{"tree", options.tree}});
-    const nlohmann::ordered_json line{{"file", options.output.filename().string()},
-                                      {"what", options.what},
-                                      {"level", options.level},
-                                      {"count", count}};
-    print_json(line);
+    print_json({{"file", options.output.filename().string()},
+                {"what", options.what},
+                {"level", options.level},
+                {"count", count}});
   } else {
     const char* one = options.what == "voxels" ? "voxel" : "sphere";
     fmt::print("{}: {}\n", options.output.string(), counted(count, one));
@@ -123,7 +121,7 @@ void add_export(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "export", "Write a level of a tree for viewers: " + endings_with_programs(kSurfaceFormats));
   const auto options = std::make_shared<ExportArguments>();
-  command->add_option("TREE", options->tree, "tree file")->type_name("FILE")->required();
+  add_file(*command, "TREE", options->tree, "tree file")->required();
   command
       ->add_option("--what", options->what, "cubes; or spheres, as points with an array 'radius'")
       ->required()
@@ -135,12 +133,10 @@ void add_export(CLI::App& app) {
       ->add_option("--spheres", options->spheres,
                    "spheres to write, of slab the balls; by default the tightest that the tree has")
       ->transform(one_of(policy_names()));
-  command
-      ->add_option(
-          "-o,--output", options->output,
-          fmt::format("file to write, by its ending: of voxels {}; of spheres {}",
-                      endings_with_programs(kSurfaceFormats), endings_with_programs(kPointFormats)))
-      ->type_name("FILE")
+  add_file(
+      *command, "-o,--output", options->output,
+      fmt::format("file to write, by its ending: of voxels {}; of spheres {}",
+                  endings_with_programs(kSurfaceFormats), endings_with_programs(kPointFormats)))
       ->required();
   command
       ->add_option("--unit", options->unit,

@@ -5,7 +5,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
 
 #include "answers/body_json.h"
 #include "answers/extents.h"
@@ -153,8 +152,7 @@ void add_info(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("info", "Show the contents of a mesh or a tree, level by level");
   const auto options = std::make_shared<InfoArguments>();
-  command->add_option("FILE", options->file, fmt::format("{} mesh, or tree", kMeshFormats))
-      ->type_name("FILE")
+  add_file(*command, "FILE", options->file, fmt::format("{} mesh, or tree", kMeshFormats))
       ->required();
   command->add_flag("--json", options->json, "print one JSON object");
   add_example(*command, "Example: ist info jaw.ist");

@@ -1,11 +1,10 @@
-#include "cli/commands/run_report.h"
-
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "cli/commands/reports.h"
 #include "cli/terminal.h"
 #include "ist/base/counted.h"
 
@@ -62,12 +61,11 @@ void print_bars(const LatencyHistogram& times) {
 void print_notes(const std::vector<BuildNote>& notes, bool json) {
   for (const BuildNote& note : notes) {
     if (json) {
-      const nlohmann::ordered_json line{{"what", note.what},
-                                        {"built", note.built},
-                                        {"why", note.why},
-                                        {"milliseconds", note.milliseconds},
-                                        {"bytes", note.bytes}};
-      print_json(line);
+      print_json({{"what", note.what},
+                  {"built", note.built},
+                  {"why", note.why},
+                  {"milliseconds", note.milliseconds},
+                  {"bytes", note.bytes}});
     } else if (note.built) {
       fmt::print("built    {:<18} {:>8.1f} ms {:>8.1f} MB  {}\n", note.what, note.milliseconds,
                  1e-6 * static_cast<double>(note.bytes), note.why);

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "ist/base/cancellation.h"
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 
 namespace ist {
 namespace {
@@ -131,9 +131,9 @@ std::string InputFile::read_rest() {
 }
 
 void InputFile::fail(const char* cause) const {
-  throw Error(ErrorCode::kFileUnreadable,
-              fmt::format("{}: cannot read the file: {}: check the name and its permissions",
-                          path_.string(), cause));
+  throw_error(ErrorCode::kFileUnreadable,
+              "{}: cannot read the file: {}: check the name and its permissions", path_.string(),
+              cause);
 }
 
 void require_writable(const std::filesystem::path& file) {

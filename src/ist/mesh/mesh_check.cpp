@@ -11,6 +11,7 @@
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/ordered_vector.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/bounding_box.h"
 #include "ist/mesh/components.h"
 #include "ist/mesh/mesh.h"
@@ -120,18 +121,17 @@ void require_valid(const TriangleMesh& mesh) {
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Eigen::Vector3d& v = mesh.vertices[i];
     if (!(std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]))) {
-      throw Error(
-          ErrorCode::kMeshNotFinite,
-          fmt::format("vertex {} is ({}, {}, {}): pass finite numbers", i, v[0], v[1], v[2]));
+      throw_error(ErrorCode::kMeshNotFinite, "vertex {} is ({}, {}, {}): pass finite numbers", i,
+                  v[0], v[1], v[2]);
     }
   }
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     for (const std::uint32_t vertex : mesh.triangles[i]) {
       if (vertex < mesh.vertices.size()) continue;
-      throw Error(ErrorCode::kMeshBadIndex,
-                  fmt::format("triangle {} has the vertex index {}, but there {} {}: count from 0",
-                              i, vertex, mesh.vertices.size() == 1 ? "is" : "are",
-                              counted(mesh.vertices.size(), "vertex", "vertices")));
+      throw_error(ErrorCode::kMeshBadIndex,
+                  "triangle {} has the vertex index {}, but there {} {}: count from 0", i, vertex,
+                  mesh.vertices.size() == 1 ? "is" : "are",
+                  counted(mesh.vertices.size(), "vertex", "vertices"));
     }
   }
 }

@@ -1,10 +1,7 @@
 #include "ist/query/query_state.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 #include "ist/query/query_rules.h"
 #include "ist/query/relative_pose.h"
 #include "ist/query/traversal/search_pose.h"
@@ -38,14 +35,14 @@ TriangleOptions triangle_options(const QueryOptions& options) {
 std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const SphereTree& moving,
                        const QueryOptions& options) {
   if (options.workers != 1 && options.workers != 2) {
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("query option workers is {}: give 1 or 2", options.workers));
+    throw_error(ErrorCode::kArgumentInvalid, "query option workers is {}: give 1 or 2",
+                options.workers);
   }
   for (const auto& [name, pairs] :
        {std::pair{"front_pairs", options.front_pairs}, {"near_pairs", options.near_pairs}}) {
     if (pairs <= kMostItems) continue;
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("query option {} is {}: {} is the most", name, pairs, kMostItems));
+    throw_error(ErrorCode::kArgumentInvalid, "query option {} is {}: {} is the most", name, pairs,
+                kMostItems);
   }
   std::size_t bytes = (options.workers == 2 ? SharedSearch::bytes_for(plan, options.frontier_pairs)
                                             : Search::bytes_for(plan, options.frontier_pairs)) +

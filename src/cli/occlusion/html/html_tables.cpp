@@ -1,5 +1,3 @@
-#include "cli/occlusion/html/html_tables.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "answers/occlusion/bite_numbers.h"
+#include "cli/occlusion/html/html_parts.h"
 #include "cli/occlusion/html/html_text.h"
 
 namespace ist::cli {

@@ -10,7 +10,6 @@
 #include "ist/base/counted.h"
 #include "ist/base/printable.h"
 #include "ist/mesh/format/mesh_readers.h"
-#include "ist/mesh/format/text_reader.h"
 
 namespace ist {
 namespace {
