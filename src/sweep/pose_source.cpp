@@ -97,6 +97,8 @@ Eigen::Matrix3d small_turn(Philox& random, const Eigen::Vector3d& within) {
 
 }  // namespace
 
+void PoseSource::values(std::uint64_t /*index*/, std::span<double> /*values*/) const {}
+
 PoseGrid::PoseGrid(std::vector<Axis> axes) : axes_(std::move(axes)) {
   for (Axis& axis : axes_) {
     if (const auto along = direction_of(axis.direction)) axis.direction = along->unit;
@@ -125,12 +127,30 @@ void PoseGrid::read(std::uint64_t first, std::span<Eigen::Isometry3d> poses) con
   for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = pose(first + i);
 }
 
+std::vector<std::string> PoseGrid::value_names() const {
+  std::vector<std::string> names;
+  for (const Axis& axis : axes_) {
+    if (!axis.name.empty()) names.push_back(axis.name);
+  }
+  return names;
+}
+
+void PoseGrid::values(std::uint64_t index, std::span<double> values) const {
+  std::size_t at = values.size();
+  for (std::size_t i = axes_.size(); i-- > 0;) {
+    const Axis& axis = axes_[i];
+    if (!axis.name.empty()) values[--at] = value_of(axis, index % axis.count);
+    index /= axis.count;
+  }
+}
+
 std::string PoseGrid::identity() const {
   std::string text = "grid";
   for (const Axis& axis : axes_) {
     text += fmt::format(" {} {} about {} from {} to {} count {}", axis.turns ? "turn" : "move",
                         bits_of(axis.direction), bits_of(axis.about), bits_of(axis.from),
                         bits_of(axis.to), axis.count);
+    if (!axis.name.empty()) text += " name " + axis.name;
   }
   return text;
 }

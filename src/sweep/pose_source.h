@@ -23,7 +23,12 @@ class PoseSource {
   /// Computes the poses from number `first` on. Each maps moving mesh
   /// coordinates to fixed mesh coordinates. Precondition: first + poses.size() <= count().
   virtual void read(std::uint64_t first, std::span<Eigen::Isometry3d> poses) const = 0;
-  /// Returns a text that differs for other poses. Numbers are in it to the bit.
+  /// Returns the names of the values that belong to each pose, such as those of a grid's axes.
+  [[nodiscard]] virtual std::vector<std::string> value_names() const { return {}; }
+  /// Writes the values of a pose. Preconditions: index < count(); values.size() is that of
+  /// value_names().
+  virtual void values(std::uint64_t index, std::span<double> values) const;
+  /// Returns a text that differs for other poses or names. Numbers are in it to the bit.
   [[nodiscard]] virtual std::string identity() const = 0;
   /// Throws kInputInvalid where the poses are no longer those of identity(), as in a file that was
   /// written since.
@@ -51,6 +56,7 @@ class PoseGrid : public PoseSource {
     Eigen::Vector3d about = Eigen::Vector3d::Zero();       ///< a point of a turn's axis
     double from = 0, to = 0;                               ///< mesh units, or degrees
     std::uint64_t count = 1;                               ///< values, `from` and `to` among them
+    std::string name = {};  ///< of the column that rows have; empty: none
   };
 
   /// Precondition: at least one axis; the product of the counts is less than 2^63.
@@ -58,6 +64,8 @@ class PoseGrid : public PoseSource {
 
   [[nodiscard]] std::uint64_t count() const override { return count_; }
   void read(std::uint64_t first, std::span<Eigen::Isometry3d> poses) const override;
+  [[nodiscard]] std::vector<std::string> value_names() const override;
+  void values(std::uint64_t index, std::span<double> values) const override;
   [[nodiscard]] std::string identity() const override;
 
   /// Returns value `step` of an axis: the last is `to` itself.

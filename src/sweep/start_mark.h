@@ -35,6 +35,26 @@ class StartMark {
   int descriptor_ = -1;
 };
 
+/// A mark beside a table that is being merged: rows.start. At most one object in all processes
+/// holds it, by a lock (flock). A process that is killed leaves the mark without the lock, and the
+/// next merge takes it over. On a file system without locks every object holds its mark: merges at
+/// the same time write the same bytes.
+class MergeMark {
+ public:
+  /// Tries to take the mark. Throws UnwritableFile.
+  explicit MergeMark(const SweepFolder& folder);
+  /// Removes the mark that this object holds.
+  ~MergeMark();
+  MergeMark(const MergeMark&) = delete;
+  MergeMark& operator=(const MergeMark&) = delete;
+
+  [[nodiscard]] bool is_held() const noexcept { return descriptor_ >= 0; }
+
+ private:
+  std::filesystem::path file_;
+  int descriptor_ = -1;
+};
+
 /// Removes the marks of all starts of a part that is there now.
 void remove_marks(const SweepFolder& folder, std::uint64_t part) noexcept;
 

@@ -42,6 +42,7 @@ struct PartStatus {
 ///     part-000017.json       its checksum, and the seconds that it took
 ///     part-000017.start-1    somebody began the part and has not ended it
 ///     rows.npy               all rows, after a merge
+///     rows.start             somebody is merging, or was killed while merging
 ///     manifest.json          what sweep.json holds, and the checksums of all parts
 ///
 /// No file holds a path. Any number of processes on any machines may work in one folder at a time.
@@ -69,6 +70,9 @@ class SweepFolder {
   /// The length of a part's file, bytes.
   [[nodiscard]] std::uint64_t bytes_of_part(std::uint64_t part) const;
 
+  /// Whether the file of each part is there. Cost: some microseconds a part up to the first that is
+  /// missing, the last part first.
+  [[nodiscard]] bool has_all_parts() const;
   /// Looks how a part stands: whether its file is there, with a record, and of the right length.
   /// Throws kInputInvalid for a part of another sweep.
   [[nodiscard]] PartStatus look(std::uint64_t part) const;

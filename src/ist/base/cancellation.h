@@ -2,6 +2,8 @@
 
 #include <atomic>
 
+#include "ist/base/api.h"
+
 namespace ist {
 
 /// Lets another thread end long work of this one, as a cancellation point of POSIX threads does:
@@ -17,6 +19,9 @@ class ScopedCancellation {
  private:
   const std::atomic<bool>* before_;
 };
+
+/// Returns whether this thread was asked to end. Cost: 2 ns.
+[[nodiscard]] IST_LOOP_API bool is_cancelled() noexcept;
 
 /// Throws kCancelled where this thread was asked to end. Readers and writers of files call it at
 /// each face and each 4 MiB, those of trees in memory at each array, a check of a mesh between its
