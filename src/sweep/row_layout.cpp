@@ -48,8 +48,8 @@ std::array<double, 7> numbers_of(const Eigen::Isometry3d& pose) noexcept {
   return {(*rigid)(0, 3), (*rigid)(1, 3), (*rigid)(2, 3), turn[0], turn[1], turn[2], turn[3]};
 }
 
-// Calls `column(name, type, value)` for each column in order. `names` are those of pose.values, or
-// empty if nobody reads the names.
+// Calls `column(name, type, value)` for each column in order. `names` belong to pose.values, or are
+// empty if `column` ignores names.
 template <typename Each>
 void each_column(const RowQuestions& asked, std::span<const std::string> names, const RowPose& pose,
                  const RowNumbers& numbers, const Each& column) {

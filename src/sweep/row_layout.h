@@ -49,13 +49,13 @@ struct RowPose {
 };
 
 /// Returns the columns of a row: `index`; one for each name in `values`; the pose as `x`, `y`, `z`
-/// and the unit quaternion `qx`, `qy`, `qz`, `qw`; `status`, `complete`; then those of each
-/// question.
+/// and the unit quaternion `qx`, `qy`, `qz`, `qw`; `status`, `complete`; then the
+/// answers to each question.
 [[nodiscard]] RowLayout layout_of(const RowQuestions& questions,
                                   std::span<const std::string> values = {});
 
-/// Writes a row of that layout. The quaternion is that of the nearest rotation, and `qw` is not
-/// negative. The columns of a pose that is no rigid motion are NaN.
+/// Writes a row of that layout. The pose is the nearest rigid motion, and `qw` is not negative. If
+/// the pose is not a rigid motion, its columns are NaN.
 void write_row(const RowQuestions& questions, const RowPose& pose, const RowNumbers& numbers,
                std::span<std::byte> row);
 

@@ -23,9 +23,8 @@ bool is_live(int descriptor) {
   return false;
 }
 
-// Locks a mark that this process made just now: for a moment somebody may be looking at it. Where a
-// file system has no locks, the mark counts lost starts all the same, and shares that overlap are
-// not seen.
+// Locks a mark that this process made just now. For a moment somebody may be looking at it. If a
+// file system lacks locks, the mark still counts lost starts, and nobody sees shares that overlap.
 void lock(int descriptor) {
   while (::flock(descriptor, LOCK_EX) != 0 && errno == EINTR) continue;
 }

@@ -19,10 +19,10 @@ struct PartStarts {
 
 /// A mark beside a part that is being made: part-000017.start-1. It outlives a process that is
 /// killed, and so counts the starts that were lost. While its process lives the mark is locked
-/// (flock), by which others see that the part is being made.
+/// (flock), so that others see that the part is being made.
 class StartMark {
  public:
-  /// Makes the mark. Throws kPartBusy where another process, or thread, is making the part;
+  /// Makes the mark. Throws kPartBusy if another process, or thread, is making the part;
   /// UnwritableFile. Precondition: fewer than kMostStarts starts were lost.
   StartMark(const SweepFolder& folder, std::uint64_t part);
   /// Removes the mark: this start ended in order.

@@ -23,13 +23,14 @@ namespace ist {
 class Sweep {
  public:
   /// Reads the sweep file and computes the hashes of the files that it names. The first part loads
-  /// trees and builds those of meshes. Throws what read_sweep_file() does. Has cancellation points.
+  /// trees, and builds trees of meshes. Throws the errors of read_sweep_file(). Has cancellation
+  /// points.
   explicit Sweep(const std::filesystem::path& file);
 
   [[nodiscard]] const SweepFile& file() const noexcept { return file_; }
   [[nodiscard]] const RowLayout& layout() const noexcept { return layout_; }
   [[nodiscard]] const SweepIdentity& identity() const noexcept { return identity_; }
-  /// The number of poses, which is that of the rows.
+  /// The number of poses. Each pose has a row.
   [[nodiscard]] std::uint64_t rows() const noexcept { return identity_.rows; }
   [[nodiscard]] std::uint64_t parts() const noexcept { return identity_.parts(); }
 
@@ -50,17 +51,17 @@ class Sweep {
   /// @param proceed asked every 20 ms with the share of the part that is done; false ends the call
   ///                (kStopped), and leaves no file
   ///
-  /// Throws kPartBusy where another process is making the part now (shares overlap); kInputInvalid
+  /// Throws kPartBusy if another process is making the part now (shares overlap); kInputInvalid
   /// for a part that is there and of another sweep or damaged, and for a body or a file of poses
   /// that changed since; kPolicyMissing; UnwritableFile; what answer_rows() throws. Has
   /// cancellation points.
-  /// Memory: that of the trees, and for each thread that of a query and 2 MB.
+  /// Memory: the trees, and for each thread a query and 2 MB.
   Outcome run_part(const SweepFolder& folder, std::uint64_t part, std::size_t threads,
                    const Proceed& proceed = {}) const;
 
  private:
   struct Bodies;
-  // Loads the bodies once. Throws if their files are no longer those of identity().
+  // Loads the bodies once. Throws if their files changed since identity() was computed.
   [[nodiscard]] std::shared_ptr<const Bodies> bodies() const;
   // Writes a part's rows. Returns whether `proceed` let it come to its end.
   bool write_rows(std::uint64_t part, const Bodies& bodies, std::size_t threads,

@@ -37,10 +37,10 @@ BodyKeys keys_of(TableReader& sweep, std::string_view name) {
   return {std::move(table), is_older ? "tree" : "file"};
 }
 
-// Whether the questions need voxels. Triangles answer all others.
+// Whether the questions need voxels. Triangles answer the other questions.
 bool need_voxels(const RowQuestions& asked) { return asked.leaf_pairs || asked.contacts; }
 
-// The voxel size of a mesh that needs no voxels: one voxel holds it.
+// The voxel size of a mesh without questions for voxels: one voxel holds it.
 double size_of_one_voxel(const TriangleMesh& mesh) {
   Eigen::Vector3d low = mesh.vertices.front(), high = low;
   for (const Eigen::Vector3d& vertex : mesh.vertices) {
@@ -51,7 +51,7 @@ double size_of_one_voxel(const TriangleMesh& mesh) {
   return extent > 0 ? extent : 1;  // build_tree() refuses a mesh without an extent
 }
 
-// Takes the word of the sweep file for what a mesh may say itself.
+// Returns the unit or frame that the sweep file or the mesh says. Throws if they contradict.
 template <typename Word>
 Word agreed(const SweepBody& body, const char* key, Word told, Word said) {
   if (!contradict(told, said)) return told == Word::kUnknown ? said : told;

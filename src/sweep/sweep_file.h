@@ -20,8 +20,8 @@ struct SweepFile {
   std::shared_ptr<const PoseSource> poses;
   RowQuestions questions;
   std::optional<SpherePolicy> spheres;  ///< by default the tightest that both bodies have
-  double margin = 0;                    ///< distance at which springs begin, mean voxel sizes
-  double stiffness = 1;                 ///< of springs, N/mm³ where meshes are in mm
+  double margin = 0;                    ///< springs begin at this distance, mean voxel sizes
+  double stiffness = 1;                 ///< of springs, N/mm³ for meshes in mm
   std::uint64_t rows_per_part = 100000;
 };
 

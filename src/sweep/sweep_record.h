@@ -32,8 +32,8 @@ struct PartRecord {
 /// another layout of rows.
 void require_same_sweep(const std::filesystem::path& file, const SweepIdentity& identity);
 
-/// Returns the content of manifest.json: that of sweep.json, the checksums of all parts in order,
-/// and that of rows.npy.
+/// Returns the content of manifest.json: the content of sweep.json, and the checksums of rows.npy
+/// and of all parts in order.
 [[nodiscard]] std::string manifest_of(const SweepIdentity& identity, const RowLayout& layout,
                                       const std::vector<std::string>& parts,
                                       const std::string& npy);

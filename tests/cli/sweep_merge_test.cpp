@@ -2,6 +2,7 @@
 // killed.
 
 #include <csignal>
+#include <deque>
 
 #include "cli/sweep_case.h"
 
@@ -31,7 +32,7 @@ class SweepMerge : public SweepCommand {
 TEST_F(SweepMerge, ProcessesThatFinishAtOnceMakeOneTable) {
   for (int round = 0; round < 5; ++round) {
     const std::string folder = fmt::format("out-{}", round);
-    std::vector<Process> shares;
+    std::deque<Process> shares;
     for (const char* share : {"0/3", "1/3", "2/3"}) {
       shares.emplace_back(IST_COMMAND, arguments(job_, folder, {"--share", share, "--json"}));
     }

@@ -27,7 +27,7 @@ struct NumberRange {
 
 /// Reads the values of one table by key. A value of another type or out of range throws
 /// kInputInvalid with file, line and remedy. The reader notes each key that it is asked for in
-/// TomlTable::known, by which refuse_unknown() finds the unknown ones.
+/// TomlTable::known, so that refuse_unknown() finds unknown keys.
 class TableReader {
  public:
   /// Both arguments must outlive the reader.
