@@ -113,13 +113,20 @@ double PoseGrid::value_of(const Axis& axis, std::uint64_t step) noexcept {
          (axis.to - axis.from) * (static_cast<double>(step) / static_cast<double>(axis.count - 1));
 }
 
-Eigen::Isometry3d PoseGrid::pose(std::uint64_t index) const {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+template <typename Take>
+void PoseGrid::each_value(std::uint64_t index, const Take& take) const {
   for (std::size_t i = axes_.size(); i-- > 0;) {
     const Axis& axis = axes_[i];
-    pose = composed(motion_of(axis, value_of(axis, index % axis.count)), pose);
+    take(axis, value_of(axis, index % axis.count));
     index /= axis.count;
   }
+}
+
+Eigen::Isometry3d PoseGrid::pose(std::uint64_t index) const {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  each_value(index, [&](const Axis& axis, double value) {
+    pose = composed(motion_of(axis, value), pose);
+  });
   return pose;
 }
 
@@ -137,11 +144,9 @@ std::vector<std::string> PoseGrid::value_names() const {
 
 void PoseGrid::values(std::uint64_t index, std::span<double> values) const {
   std::size_t at = values.size();
-  for (std::size_t i = axes_.size(); i-- > 0;) {
-    const Axis& axis = axes_[i];
-    if (!axis.name.empty()) values[--at] = value_of(axis, index % axis.count);
-    index /= axis.count;
-  }
+  each_value(index, [&](const Axis& axis, double value) {
+    if (!axis.name.empty()) values[--at] = value;
+  });
 }
 
 std::string PoseGrid::identity() const {

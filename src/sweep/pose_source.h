@@ -71,6 +71,9 @@ class PoseGrid : public PoseSource {
   [[nodiscard]] static double value_of(const Axis& axis, std::uint64_t step) noexcept;
 
  private:
+  // Calls `take(axis, value)` for the value of each axis in a pose, the last axis first.
+  template <typename Take>
+  void each_value(std::uint64_t index, const Take& take) const;
   [[nodiscard]] Eigen::Isometry3d pose(std::uint64_t index) const;
 
   std::vector<Axis> axes_;  // directions of unit length
