@@ -204,6 +204,6 @@ MUTANTS = [
      ["sweep_test SweepParts.OfATreeThatChangedAreNotMade"]),
     ("changed-poses-answer", "a file of poses that was written meanwhile answers too", [("npy_file.cpp",
      "if (file_.written_at() == written_at_) return;", "if (written_at_ != 0) return;")], ["sweep_test SweepParts.OfPosesThatChangedAreNotMade"]),
-    ("rows-of-the-block-before", "the numbers of rows begin anew with each block", [("sweep.cpp", "write_row(file_.questions, first + done + index,",
-     "write_row(file_.questions, first + index,")], ["sweep_test SweepParts.*"]),
+    ("rows-of-the-block-before", "the numbers of rows begin anew with each block", [("sweep.cpp",
+     "const std::uint64_t number = first + done + index;", "const std::uint64_t number = first + index;")], ["sweep_test SweepParts.*"]),
 ]
