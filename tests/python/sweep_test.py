@@ -102,7 +102,8 @@ class Rows(Sweeps):
             sweep.run(0)
             tables.append((sweep.folder / "part-000000.npy").read_bytes())
         self.assertEqual(*tables)
-        self.refuses(ist.InputError, [".toml:", "fixed", "voxels", "voxel_size"], self.job, GRID, ["contacts"], bodies='fixed = "upper.stl"\nmoving = "lower.ist"\n')
+        bodies = 'fixed = "upper.stl"\nmoving = "lower.ist"\n'
+        self.refuses(ist.InputError, [".toml:", "fixed", "need voxels", "voxel_size"], self.job, GRID, ["contacts"], bodies=bodies)
 
     def test_columns_are_those_of_the_answers(self):
         pose = [(name, "<f8") for name in POSE]
