@@ -104,7 +104,8 @@ void each_column(const RowQuestions& asked, std::span<const std::string> names, 
 RowLayout layout_of(const RowQuestions& questions, std::span<const std::string> values) {
   RowLayout layout;
   const std::vector<double> none(values.size());
-  each_column(questions, values, {.values = none}, RowNumbers(),
+  const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
+  each_column(questions, values, {.values = none, .pose = identity}, RowNumbers(),
               [&](const char* name, ColumnType type, auto) { layout.add(name, type); });
   return layout;
 }

@@ -45,7 +45,7 @@ inline constexpr std::uint64_t kRowLayoutVersion = 2;
 struct RowPose {
   std::uint64_t index = 0;
   std::span<const double> values = {};  ///< of the named axes of a grid
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  const Eigen::Isometry3d& pose;
 };
 
 /// Returns the columns of a row: `index`; one for each name in `values`; the pose as `x`, `y`, `z`

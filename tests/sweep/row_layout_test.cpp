@@ -202,7 +202,7 @@ TEST(RowLayout, AnInvalidPoseHasItsStatus) {
   numbers.pose_is_valid = false;
   const RowQuestions questions{.intersects = true};
   std::vector<std::byte> row(layout_of(questions).bytes);
-  write_row(questions, {.index = 5}, numbers, row);
+  write_row(questions, {.index = 5, .pose = Eigen::Isometry3d::Identity()}, numbers, row);
   std::int32_t status = 0;
   std::memcpy(&status, row.data() + 8 + 7 * sizeof(double), sizeof(status));
   EXPECT_EQ(status, 120);  // IST_POSE_INVALID
