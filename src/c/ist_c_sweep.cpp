@@ -170,8 +170,10 @@ ist_status ist_sweep_merge(const ist_sweep* sweep, const char* folder, const ist
                                                  : ist::SweepFolder::Access::kRead;
     std::optional<ist_sweep_merge_result> made;
     followed(follower, [&](const ist::Proceed& proceed) {
+      const ist::SweepFolder parts = folder_of(held->sweep, folder, access);
       const ist::MergeResult merged =
-          ist::merge_parts(folder_of(held->sweep, folder, access), held->sweep.layout(), proceed);
+          ist::merge_parts(parts, held->sweep.layout(), ist::TableCheck::kChecksum, proceed);
+      if (merged.outcome == ist::MergeOutcome::kBusy) ist::fail_merging(parts);
       made =
           ist_sweep_merge_result{0, merged.rows, merged.missing.size(), merged.given_up.size(), 0};
     });

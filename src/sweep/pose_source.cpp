@@ -95,6 +95,8 @@ Eigen::Matrix3d small_turn(Philox& random, const Eigen::Vector3d& within) {
 
 }  // namespace
 
+void PoseSource::values(std::uint64_t /*index*/, std::span<double> /*values*/) const {}
+
 PoseGrid::PoseGrid(std::vector<Axis> axes) : axes_(std::move(axes)) {
   for (Axis& axis : axes_) {
     if (const auto along = direction_of(axis.direction)) axis.direction = along->unit;
@@ -109,18 +111,40 @@ double PoseGrid::value_of(const Axis& axis, std::uint64_t step) noexcept {
          (axis.to - axis.from) * (static_cast<double>(step) / static_cast<double>(axis.count - 1));
 }
 
-Eigen::Isometry3d PoseGrid::pose(std::uint64_t index) const {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+template <typename Take>
+void PoseGrid::each_value(std::uint64_t index, const Take& take) const {
   for (std::size_t i = axes_.size(); i-- > 0;) {
     const Axis& axis = axes_[i];
-    pose = composed(motion_of(axis, value_of(axis, index % axis.count)), pose);
+    take(axis, value_of(axis, index % axis.count));
     index /= axis.count;
   }
+}
+
+Eigen::Isometry3d PoseGrid::pose(std::uint64_t index) const {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  each_value(index, [&](const Axis& axis, double value) {
+    pose = composed(motion_of(axis, value), pose);
+  });
   return pose;
 }
 
 void PoseGrid::read(std::uint64_t first, std::span<Eigen::Isometry3d> poses) const {
   for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = pose(first + i);
+}
+
+std::vector<std::string> PoseGrid::value_names() const {
+  std::vector<std::string> names;
+  for (const Axis& axis : axes_) {
+    if (!axis.name.empty()) names.push_back(axis.name);
+  }
+  return names;
+}
+
+void PoseGrid::values(std::uint64_t index, std::span<double> values) const {
+  std::size_t at = values.size();
+  each_value(index, [&](const Axis& axis, double value) {
+    if (!axis.name.empty()) values[--at] = value;
+  });
 }
 
 std::string PoseGrid::identity() const {
@@ -129,6 +153,7 @@ std::string PoseGrid::identity() const {
     text += fmt::format(" {} {} about {} from {} to {} count {}", axis.turns ? "turn" : "move",
                         bits_of(axis.direction), bits_of(axis.about), bits_of(axis.from),
                         bits_of(axis.to), axis.count);
+    if (!axis.name.empty()) text += " name " + axis.name;
   }
   return text;
 }

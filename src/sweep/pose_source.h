@@ -13,7 +13,7 @@
 namespace ist {
 
 /// The poses of a sweep, by number. Pose i has the same bits on every machine and in every order of
-/// asking, and none is stored but those of a file. Any number of threads may ask at a time.
+/// asking. Only poses from a file are stored. Any number of threads may ask at a time.
 class PoseSource {
  public:
   virtual ~PoseSource() = default;
@@ -23,10 +23,14 @@ class PoseSource {
   /// Computes the poses from number `first` on. Each maps moving mesh
   /// coordinates to fixed mesh coordinates. Precondition: first + poses.size() <= count().
   virtual void read(std::uint64_t first, std::span<Eigen::Isometry3d> poses) const = 0;
-  /// Returns a text that differs for other poses. Numbers are in it to the bit.
+  /// Returns the names of the values that belong to each pose, such as the named axes of a grid.
+  [[nodiscard]] virtual std::vector<std::string> value_names() const { return {}; }
+  /// Writes the values of a pose. Preconditions: index < count(); one element in `values` for
+  /// each name.
+  virtual void values(std::uint64_t index, std::span<double> values) const;
+  /// Returns a text that differs for other poses or names. Numbers are in it to the bit.
   [[nodiscard]] virtual std::string identity() const = 0;
-  /// Throws kInputInvalid where the poses are no longer those of identity(), as in a file that was
-  /// written since.
+  /// Throws kInputInvalid if identity() has other poses by now, as after a write to their file.
   virtual void require_unchanged() const {}
 };
 
@@ -51,6 +55,7 @@ class PoseGrid : public PoseSource {
     Eigen::Vector3d about = Eigen::Vector3d::Zero();       ///< a point of a turn's axis
     double from = 0, to = 0;                               ///< mesh units, or degrees
     std::uint64_t count = 1;                               ///< values, `from` and `to` among them
+    std::string name = {};  ///< of the column that rows have; empty: none
   };
 
   /// Precondition: at least one axis; the product of the counts is less than 2^63.
@@ -58,12 +63,17 @@ class PoseGrid : public PoseSource {
 
   [[nodiscard]] std::uint64_t count() const override { return count_; }
   void read(std::uint64_t first, std::span<Eigen::Isometry3d> poses) const override;
+  [[nodiscard]] std::vector<std::string> value_names() const override;
+  void values(std::uint64_t index, std::span<double> values) const override;
   [[nodiscard]] std::string identity() const override;
 
   /// Returns value `step` of an axis: the last is `to` itself.
   [[nodiscard]] static double value_of(const Axis& axis, std::uint64_t step) noexcept;
 
  private:
+  // Calls `take(axis, value)` for the value of each axis in a pose, the last axis first.
+  template <typename Take>
+  void each_value(std::uint64_t index, const Take& take) const;
   [[nodiscard]] Eigen::Isometry3d pose(std::uint64_t index) const;
 
   std::vector<Axis> axes_;  // directions of unit length
@@ -72,8 +82,8 @@ class PoseGrid : public PoseSource {
 
 /// Random poses: a move from a box, and a turn. Pose i depends on the seed and on i alone.
 ///
-/// Its random numbers are those of Philox(seed, i), in this order: three for the move; then those
-/// of the turn. A uniform turn is drawn by rejection from two discs (G. Marsaglia, Choosing a point
+/// Philox(seed, i) draws its random numbers in this order: three for the move, then some for the
+/// turn. A uniform turn is drawn by rejection from two discs (G. Marsaglia, Choosing a point
 /// from the surface of a sphere, Ann. Math. Stat. 43(2), 1972). A small one is Cayley's: its vector
 /// w is drawn from a box, and its quaternion is 1 + w/2, divided by its length; it turns by
 /// 2 atan(|w|/2) about w, which is |w| to a part of |w|²/12.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -37,12 +38,25 @@ struct RowLayout {
   }
 };
 
-/// Returns the columns of the answers to these questions: `index`, `status`, `complete`, then those
-/// of each question.
-[[nodiscard]] RowLayout layout_of(const RowQuestions& questions);
+/// The version of the columns. Folders of rows of another version are refused.
+inline constexpr std::uint64_t kRowLayoutVersion = 2;
 
-/// Writes a row of that layout.
-void write_row(const RowQuestions& questions, std::uint64_t index, const RowNumbers& numbers,
+/// A pose as a row holds it.
+struct RowPose {
+  std::uint64_t index = 0;
+  std::span<const double> values = {};  ///< of the named axes of a grid
+  const Eigen::Isometry3d& pose;
+};
+
+/// Returns the columns of a row: `index`; one for each name in `values`; the pose as `x`, `y`, `z`
+/// and the unit quaternion `qx`, `qy`, `qz`, `qw`; `status`, `complete`; then the
+/// answers to each question.
+[[nodiscard]] RowLayout layout_of(const RowQuestions& questions,
+                                  std::span<const std::string> values = {});
+
+/// Writes a row of that layout. The pose is the nearest rigid motion, and `qw` is not negative. If
+/// the pose is not a rigid motion, its columns are NaN.
+void write_row(const RowQuestions& questions, const RowPose& pose, const RowNumbers& numbers,
                std::span<std::byte> row);
 
 }  // namespace ist

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -22,11 +23,24 @@ bool is_live(int descriptor) {
   return false;
 }
 
-// Locks a mark that this process made just now: for a moment somebody may be looking at it. Where a
-// file system has no locks, the mark counts lost starts all the same, and shares that overlap are
-// not seen.
+// Locks a mark that this process made just now. For a moment somebody may be looking at it. If a
+// file system lacks locks, the mark still counts lost starts, and nobody sees shares that overlap.
 void lock(int descriptor) {
   while (::flock(descriptor, LOCK_EX) != 0 && errno == EINTR) continue;
+}
+
+[[noreturn]] void fail_to_create(const std::filesystem::path& file) {
+  throw UnwritableFile(fmt::format("{}: cannot create the file: {}: check the folder, its "
+                                   "permissions and the space on the disk",
+                                   file.string(), std::strerror(errno)),
+                       errno);
+}
+
+// Whether a file is still the one with that name.
+bool has_name(int descriptor, const std::filesystem::path& name) {
+  struct stat opened = {}, named = {};
+  return ::fstat(descriptor, &opened) == 0 && ::stat(name.c_str(), &named) == 0 &&
+         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
 }
 
 }  // namespace
@@ -64,17 +78,31 @@ StartMark::StartMark(const SweepFolder& folder, std::uint64_t part) {
       lock(descriptor_);
       return;
     }
-    if (errno != EEXIST) {
-      throw UnwritableFile(fmt::format("{}: cannot create the file: {}: check the folder, its "
-                                       "permissions and the space on the disk",
-                                       file_.string(), std::strerror(errno)),
-                           errno);
-    }
+    if (errno != EEXIST) fail_to_create(file_);
   }
   fail_overlap(folder, part);  // somebody was faster
 }
 
 StartMark::~StartMark() {
+  ::unlink(file_.c_str());
+  ::close(descriptor_);
+}
+
+MergeMark::MergeMark(const SweepFolder& folder) : file_(folder.path() / "rows.start") {
+  while (true) {
+    descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) fail_to_create(file_);
+    const bool is_taken = ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    if (!is_taken && has_name(descriptor_, file_)) return;
+    ::close(descriptor_);
+    descriptor_ = -1;
+    if (is_taken) return;
+    // The holder before removed the file after this process opened it.
+  }
+}
+
+MergeMark::~MergeMark() {
+  if (!is_held()) return;
   ::unlink(file_.c_str());
   ::close(descriptor_);
 }

@@ -45,22 +45,22 @@ std::string questions_text(const SweepFile& file) {
 }
 
 SweepIdentity identity_of(const SweepFile& file) {
-  const std::string text =
-      fmt::format("ist sweep 1\nfixed {}\nmoving {}\nposes {}\n{}\n", file.fixed.hash,
-                  file.moving.hash, file.poses->identity(), questions_text(file));
+  const std::string text = fmt::format(
+      "ist sweep {}\nfixed {}\nmoving {}\nposes {}\n{}\n", kRowLayoutVersion, file.fixed.identity(),
+      file.moving.identity(), file.poses->identity(), questions_text(file));
   Checksum hash;
   hash.add(text.data(), text.size());
   return {hash.text(), file.poses->count(), file.rows_per_part};
 }
 
-// Loads a tree that must still be the one whose hash is known.
-SphereTree read_same_tree(const SweepFile::Body& body) {
-  SphereTree tree = read_tree(body.tree);
-  if (hash_of_file(body.tree) == body.hash) return tree;
-  throw_error(ErrorCode::kInputInvalid,
-              "{}: the tree changed since the sweep was opened: take the tree that the "
-              "sweep was made for, or begin anew, with a folder of its own",
-              body.tree.string());
+// A mesh without voxels answers by its triangles alone, so the other body must have some too.
+void require_answers(const SweepBody& mesh, const SweepBody& other, const SphereTree& other_tree) {
+  if (!mesh.is_mesh || mesh.voxel_size > 0 || other_tree.triangles() != nullptr) return;
+  throw_error(
+      ErrorCode::kInputInvalid,
+      "{}: {} is a mesh without voxels, and {} is a tree without triangles: give the mesh a "
+      "'voxel_size'",
+      mesh.place, mesh.file.string(), other.file.string());
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ struct Sweep::Bodies {
 
 Sweep::Sweep(const std::filesystem::path& file)
     : file_(read_sweep_file(file)),
-      layout_(layout_of(file_.questions)),
+      layout_(layout_of(file_.questions, file_.poses->value_names())),
       identity_(identity_of(file_)) {}
 
 void Sweep::poses(std::uint64_t first, std::span<Eigen::Isometry3d> poses) const {
@@ -83,16 +83,19 @@ void Sweep::poses(std::uint64_t first, std::span<Eigen::Isometry3d> poses) const
 std::shared_ptr<const Sweep::Bodies> Sweep::bodies() const {
   const std::lock_guard lock(loading_);
   if (!bodies_) {
+    const SweepBody &fixed = file_.fixed, &moving = file_.moving;
     auto loaded = std::make_shared<const Bodies>(
-        Bodies{read_same_tree(file_.fixed), read_same_tree(file_.moving)});
+        Bodies{load_tree(fixed, file_.spheres), load_tree(moving, file_.spheres)});
+    require_answers(fixed, moving, loaded->moving);
+    require_answers(moving, fixed, loaded->fixed);
     if (file_.questions.penetration) {
       require_triangles(loaded->fixed, "the fixed body");
       require_triangles(loaded->moving, "the moving body");
     }
     const std::string reason =
-        contradiction(loaded->moving, "the tree", loaded->fixed, file_.fixed.tree.string());
+        contradiction(loaded->moving, moving.file.string(), loaded->fixed, fixed.file.string());
     if (!reason.empty()) {
-      throw_error(ErrorCode::kInputInvalid, "{}: {}", file_.moving.tree.string(), reason);
+      throw_error(ErrorCode::kInputInvalid, "{}: {}", moving.place, reason);
     }
     const Query needs_the_spheres(loaded->fixed, loaded->moving, {.policy = file_.spheres});
     bodies_ = std::move(loaded);
@@ -118,12 +121,18 @@ bool Sweep::write_rows(std::uint64_t part, const Bodies& bodies, std::size_t thr
                       most = rows_at_once(threads);
   std::vector<Eigen::Isometry3d> poses;
   std::vector<std::byte> block;
+  const std::size_t names = file_.poses->value_names().size();
+  std::vector<double> values;
   for (std::uint64_t done = 0; done < rows; done += poses.size()) {
     poses.resize(std::min(most, rows - done));
     block.resize(poses.size() * layout_.bytes);
+    values.resize(poses.size() * names);
     this->poses(first + done, poses);
     const auto give = [&](std::size_t index, const PoseRow& row) {
-      write_row(file_.questions, first + done + index, numbers_of(row, file_.stiffness),
+      const std::uint64_t number = first + done + index;
+      const std::span<double> named = std::span(values).subspan(index * names, names);
+      file_.poses->values(number, named);
+      write_row(file_.questions, {number, named, poses[index]}, numbers_of(row, file_.stiffness),
                 std::span(block).subspan(index * layout_.bytes, layout_.bytes));
     };
     const auto share = [&](double part_of_block) {

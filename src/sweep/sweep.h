@@ -22,22 +22,24 @@ namespace ist {
 /// of threads. Any number of threads may call the functions of one sweep at a time.
 class Sweep {
  public:
-  /// Reads the sweep file and computes the hashes of the files that it names; trees are loaded
-  /// with the first part. Throws what read_sweep_file() does. Has cancellation points.
+  /// Reads the sweep file and computes the hashes of the files that it names. The first part loads
+  /// trees, and builds trees of meshes. Throws the errors of read_sweep_file(). Has cancellation
+  /// points.
   explicit Sweep(const std::filesystem::path& file);
 
   [[nodiscard]] const SweepFile& file() const noexcept { return file_; }
   [[nodiscard]] const RowLayout& layout() const noexcept { return layout_; }
   [[nodiscard]] const SweepIdentity& identity() const noexcept { return identity_; }
-  /// The number of poses, which is that of the rows.
+  /// The number of poses. Each pose has a row.
   [[nodiscard]] std::uint64_t rows() const noexcept { return identity_.rows; }
   [[nodiscard]] std::uint64_t parts() const noexcept { return identity_.parts(); }
 
   /// Computes the poses from number `first` on. Precondition: first + poses.size() <= rows().
   void poses(std::uint64_t first, std::span<Eigen::Isometry3d> poses) const;
 
-  /// Opens the folder of the parts; where nobody has begun, loads the trees and makes it. So a
-  /// sweep whose trees cannot answer leaves no folder. Throws what SweepFolder and run_part() do.
+  /// Opens the folder of the parts. If nobody has begun, loads the bodies and makes the folder, so
+  /// that a sweep whose bodies cannot answer leaves none. Throws what SweepFolder and run_part()
+  /// do.
   [[nodiscard]] SweepFolder open_folder(const std::filesystem::path& folder) const;
 
   /// How run_part() ended.
@@ -49,17 +51,17 @@ class Sweep {
   /// @param proceed asked every 20 ms with the share of the part that is done; false ends the call
   ///                (kStopped), and leaves no file
   ///
-  /// Throws kPartBusy where another process is making the part now (shares overlap); kInputInvalid
-  /// for a part that is there and of another sweep or damaged, and for a tree or a file of poses
+  /// Throws kPartBusy if another process is making the part now (shares overlap); kInputInvalid
+  /// for a part that is there and of another sweep or damaged, and for a body or a file of poses
   /// that changed since; kPolicyMissing; UnwritableFile; what answer_rows() throws. Has
   /// cancellation points.
-  /// Memory: that of the trees, and for each thread that of a query and 2 MB.
+  /// Memory: the trees, and for each thread a query and 2 MB.
   Outcome run_part(const SweepFolder& folder, std::uint64_t part, std::size_t threads,
                    const Proceed& proceed = {}) const;
 
  private:
   struct Bodies;
-  // Loads the trees once, and throws where they are not those of identity().
+  // Loads the bodies once. Throws if their files changed since identity() was computed.
   [[nodiscard]] std::shared_ptr<const Bodies> bodies() const;
   // Writes a part's rows. Returns whether `proceed` let it come to its end.
   bool write_rows(std::uint64_t part, const Bodies& bodies, std::size_t threads,

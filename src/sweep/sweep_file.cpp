@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "ist/base/checksum.h"
 #include "ist/base/direction.h"
 #include "ist/base/float_environment.h"
-#include "ist/tree/tree_stream.h"
 #include "loop/scene/table_reader.h"
 #include "loop/scene/toml_document.h"
 #include "sweep/npy_file.h"
+#include "sweep/pose_source.h"
+#include "sweep/row_layout.h"
 
 namespace ist {
 namespace {
@@ -36,26 +36,11 @@ constexpr NumberRange kRowsPerPart{1, 1e9, "rows"};
 constexpr std::string_view kAnswers =
     R"(some of "intersects", "leaf_pairs", "distance", "contacts" and "penetration")";
 
+constexpr std::string_view kColumnName =
+    "a name of at most 23 letters, digits and _, a letter first";
+
 std::filesystem::path beside(const TableReader& table, const std::string& name) {
   return table.file().parent_path() / name;
-}
-
-SweepFile::Body read_body(TableReader& sweep, std::string_view key) {
-  TableReader table = sweep.table(key);
-  SweepFile::Body body{beside(table, table.text("tree", "the name of a tree file")), ""};
-  const bool named = table.has("hash");
-  const std::string expected =
-      named ? table.text("hash", "the 32 hexadecimal digits of the file's XXH3-128") : "";
-  // What is no tree is found before a folder is made for it.
-  static_cast<void>(TreeReader(body.tree));
-  body.hash = hash_of_file(body.tree);
-  if (named && expected != body.hash) {
-    table.fail("hash",
-               fmt::format("the tree {} changed: its hash is {}, not {}", body.tree.string(),
-                           body.hash, expected),
-               "take the tree that the sweep was made for, or write the new hash and begin anew");
-  }
-  return body;
 }
 
 RowQuestions read_questions(TableReader& sweep) {
@@ -104,14 +89,42 @@ PoseGrid::Axis read_axis(TableReader& table) {
   axis.from = table.number("from", range);
   axis.to = table.number("to", range);
   axis.count = table.whole_number("count", kSteps);
+  if (table.has("name")) axis.name = table.text("name", kColumnName);
   return axis;
+}
+
+// Refuses the name of an axis that cannot be the name of a column.
+void check_name(const TableReader& table, const std::string& name,
+                const std::vector<PoseGrid::Axis>& before) {
+  constexpr std::size_t kMost = 23;  // bytes: ist_sweep_column::name holds it
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const bool is_word = std::all_of(name.begin(), name.end(), [&](char c) {
+    return is_letter(c) || (c >= '0' && c <= '9') || c == '_';
+  });
+  if (!is_word || name.empty() || !is_letter(name.front()) || name.size() > kMost) {
+    table.fail("name", fmt::format("'name' in {} is no name of a column", table.name()),
+               fmt::format("give {}", kColumnName));
+  }
+  const std::vector<Column> known = layout_of({true, true, true, true, true}).columns;
+  if (std::any_of(known.begin(), known.end(), [&](const Column& c) { return c.name == name; })) {
+    table.fail("name",
+               fmt::format("'name' in {} is \"{}\", a column of all rows or of a question",
+                           table.name(), name),
+               "give another name");
+  }
+  if (std::any_of(before.begin(), before.end(), [&](const auto& a) { return a.name == name; })) {
+    table.fail("name", fmt::format("'name' in {} is that of another axis", table.name()),
+               "give each axis another name");
+  }
 }
 
 std::shared_ptr<const PoseSource> read_grid(TableReader& poses) {
   std::vector<PoseGrid::Axis> axes;
   std::uint64_t count = 1;
   for (TableReader& table : poses.tables("axes")) {
-    axes.push_back(read_axis(table));
+    PoseGrid::Axis axis = read_axis(table);
+    if (table.has("name")) check_name(table, axis.name, axes);
+    axes.push_back(std::move(axis));
     if (axes.back().count > kMostRows / count) {
       table.fail("count", fmt::format("the grid has more than {} poses", kMostRows),
                  "make it coarser, or make several sweeps of it");
@@ -186,11 +199,8 @@ SweepFile read_sweep_file(const std::filesystem::path& file) {
   sweep.stiffness = reader.number("stiffness", kSpring, sweep.stiffness);
   sweep.rows_per_part = reader.whole_number("rows_per_part", kRowsPerPart, sweep.rows_per_part);
   // Typing errors are found before large files are read.
-  for (const std::string_view key : {"fixed", "moving"}) {
-    TableReader body = reader.table(key);
-    static_cast<void>(body.text("tree", "the name of a tree file"));
-    static_cast<void>(body.has("hash"));
-  }
+  sweep.fixed = read_sweep_body(reader, "fixed", sweep.questions);
+  sweep.moving = read_sweep_body(reader, "moving", sweep.questions);
   sweep.poses = read_poses(reader);
   reader.refuse_unknown();
   const std::uint64_t rows = sweep.poses->count();
@@ -200,8 +210,8 @@ SweepFile read_sweep_file(const std::filesystem::path& file) {
                             sweep.rows_per_part),
                 fmt::format("set rows_per_part = {} or more", (rows - 1) / kMostParts + 1));
   }
-  sweep.fixed = read_body(reader, "fixed");
-  sweep.moving = read_body(reader, "moving");
+  compute_hash(reader, "fixed", sweep.fixed);
+  compute_hash(reader, "moving", sweep.moving);
   return sweep;
 }
 

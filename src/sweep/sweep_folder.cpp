@@ -72,6 +72,14 @@ std::uint64_t SweepFolder::bytes_of_part(std::uint64_t part) const {
   return npy_header(layout_, rows).size() + rows * layout_.bytes;
 }
 
+bool SweepFolder::has_all_parts() const {
+  std::error_code unknown;
+  for (std::uint64_t part = identity_.parts(); part-- > 0;) {
+    if (!std::filesystem::exists(part_file(part), unknown)) return false;
+  }
+  return true;
+}
+
 PartStatus SweepFolder::look(std::uint64_t part) const {
   PartStatus status;
   std::error_code missing;

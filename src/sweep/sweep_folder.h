@@ -9,7 +9,7 @@
 
 namespace ist {
 
-/// Distinguishes the rows of one sweep from those of another.
+/// Distinguishes the rows of one sweep from the rows of another.
 struct SweepIdentity {
   std::string hash;  ///< 32 hexadecimal digits: of trees, poses and questions
   std::uint64_t rows = 0, rows_per_part = 1;
@@ -31,7 +31,7 @@ struct PartStatus {
   int starts = 0;        ///< begun and not ended, by processes that died or still run
   bool running = false;  ///< somebody is making it now
   double seconds = std::numeric_limits<double>::quiet_NaN();  ///< that making it took; NaN: unknown
-  std::string checksum;  ///< XXH3-128 of its file; empty where it is not there
+  std::string checksum;  ///< XXH3-128 of its file; empty if it is not there
 };
 
 /// The folder of a sweep. It holds
@@ -41,6 +41,7 @@ struct PartStatus {
 ///     part-000017.json       its checksum, and the seconds that it took
 ///     part-000017.start-1    somebody began the part and has not ended it
 ///     rows.npy               all rows, after a merge
+///     rows.start             somebody is merging, or was killed while merging
 ///     manifest.json          what sweep.json holds, and the checksums of all parts
 ///
 /// No file holds a path. Any number of processes on any machines may work in one folder at a time.
@@ -50,7 +51,7 @@ class SweepFolder {
   static constexpr int kMostStarts = 3;
 
   enum class Access { kRead, kWrite };
-  /// Opens the folder of a sweep; with kWrite, makes it and its sweep.json where they are missing.
+  /// Opens the folder of a sweep; with kWrite, makes it and its sweep.json if they are missing.
   /// Throws kInputInvalid for the folder of another sweep or version; kFileUnreadable;
   /// UnwritableFile.
   SweepFolder(std::filesystem::path folder, SweepIdentity identity, const RowLayout& layout,
@@ -62,12 +63,15 @@ class SweepFolder {
   [[nodiscard]] std::filesystem::path record_file(std::uint64_t part) const;
   [[nodiscard]] std::filesystem::path mark_file(std::uint64_t part, int start) const;
 
-  /// Throws kInputInvalid where the user may not write to the folder.
+  /// Throws kInputInvalid if the user may not write to the folder.
   void require_writable() const;
 
   /// The length of a part's file, bytes.
   [[nodiscard]] std::uint64_t bytes_of_part(std::uint64_t part) const;
 
+  /// Whether the file of each part is there. Cost: some microseconds a part up to the first that is
+  /// missing, the last part first.
+  [[nodiscard]] bool has_all_parts() const;
   /// Looks how a part stands: whether its file is there, with a record, and of the right length.
   /// Throws kInputInvalid for a part of another sweep.
   [[nodiscard]] PartStatus look(std::uint64_t part) const;

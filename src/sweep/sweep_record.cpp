@@ -26,9 +26,13 @@ Json object_of(const SweepIdentity& identity, const RowLayout& layout) {
   for (const Column& column : layout.columns) {
     columns.push_back({{"name", column.name}, {"type", name_of(column.type)}});
   }
-  return {{"sweep", identity.hash},    {"version", IST_VERSION},
-          {"rows", identity.rows},     {"rows_per_part", identity.rows_per_part},
-          {"parts", identity.parts()}, {"columns", std::move(columns)}};
+  return {{"sweep", identity.hash},
+          {"version", IST_VERSION},
+          {"layout", kRowLayoutVersion},
+          {"rows", identity.rows},
+          {"rows_per_part", identity.rows_per_part},
+          {"parts", identity.parts()},
+          {"columns", std::move(columns)}};
 }
 
 std::string text_of(const Json& json) { return json.dump(1) + "\n"; }
@@ -83,9 +87,19 @@ std::string json_of(const SweepIdentity& identity, const RowLayout& layout) {
 void require_same_sweep(const std::filesystem::path& file, const SweepIdentity& identity) {
   const Json json = read_object(file);
   const std::string hash = text_in(json, "sweep", file), version = text_in(json, "version", file);
+  // Folders of the first layout do not say it.
+  const std::uint64_t layout = json.contains("layout") ? whole_in(json, "layout", file) : 1;
+  if (layout != kRowLayoutVersion) {
+    throw Error(ErrorCode::kInputInvalid,
+                fmt::format("{}: {} version of ist began this folder, and its rows have other "
+                            "columns (layout {}, and this is {}): go on with that version, or give "
+                            "another folder",
+                            file.string(), layout < kRowLayoutVersion ? "an older" : "a newer",
+                            layout, kRowLayoutVersion));
+  }
   if (hash != identity.hash) {
     throw_error(ErrorCode::kInputInvalid,
-                "{}: the folder is of another sweep, {}, and this one is {}: a tree, "
+                "{}: the folder is of another sweep, {}, and this one is {}: a body, "
                 "a pose or a question changed; give another folder",
                 file.string(), hash, identity.hash);
   }
@@ -102,6 +116,17 @@ std::string manifest_of(const SweepIdentity& identity, const RowLayout& layout,
   Json json = object_of(identity, layout);
   json["xxh3_128"] = {{"rows.npy", npy}, {"parts", parts}};
   return text_of(json);
+}
+
+std::string table_checksum_in(const std::string& manifest) {
+  // The manifest of many parts is long, and the checksum stands before theirs.
+  constexpr std::string_view kBefore = R"("rows.npy": ")";
+  constexpr std::size_t kDigits = 32;
+  const std::size_t at = manifest.find(kBefore);
+  if (at == std::string::npos) return {};
+  const std::string digits = manifest.substr(at + kBefore.size(), kDigits);
+  const bool is_hash = digits.find_first_not_of("0123456789abcdef") == std::string::npos;
+  return is_hash ? digits : std::string();
 }
 
 }  // namespace ist

@@ -183,7 +183,7 @@ TEST_F(CSweep, RefusesNumbersOutOfRange) {
         << ist_last_error_message();
   };
   ASSERT_EQ(name(ist_sweep_get_info(sweep_, &info_)), "ok");
-  invalid(ist_sweep_get_column(sweep_, info_.columns, &column_), "column is 15");
+  invalid(ist_sweep_get_column(sweep_, info_.columns, &column_), "column is 22");
   invalid(ist_sweep_get_poses(sweep_, 10, 1, poses_.data()), "first is 10");
   invalid(ist_sweep_get_poses(sweep_, 0, 11, poses_.data()), "count is 11");
   invalid(ist_sweep_get_poses(sweep_, ~std::uint64_t{0}, 1, poses_.data()), "the sweep has 10");
@@ -249,7 +249,7 @@ TEST_F(CSweep, NamesEachFailure) {
     return name(status);
   };
   EXPECT_EQ(opened("answers = 1"), "input-invalid");
-  EXPECT_EQ(opened(sweep_text("fixed.ist", "gone.ist")), "file-unreadable");
+  EXPECT_EQ(opened(sweep_text("fixed.ist", "gone.ist")), "input-invalid");
   // A folder of another sweep, and one that cannot be one.
   ASSERT_EQ(name(run(0)), "ok");
   ist_sweep* other = open(sweep_text("seed = 7", "seed = 8"));

@@ -78,7 +78,7 @@ TEST_F(Frames, TwoInASweepAreRefused) {
   ist_well({"build", ras_, "-o", ras, "--voxel-size", "0.5"});
   ist_well({"build", lps_, "-o", lps, "--voxel-size", "0.5"});
   EXPECT_TRUE(says(refused_sweep("ras.ist", "lps.ist"),
-                   lps + ": the tree is in the frame lps, and " + ras + " is in ras"));
+                   lps + " is in the frame lps, and " + ras + " is in ras"));
 }
 
 // Labels lie where the mesh lies: a turned and converted mesh keeps them.
@@ -261,8 +261,8 @@ TEST_F(StatedUnits, OfTreesAreTakenBySweepsAndScenes) {
   const std::string mm = path("mm.ist"), inch = path("inch.ist");
   ist_well({"build", mm_, "-o", mm, "--voxel-size", "2"});
   ist_well({"build", inch_moving_, "-o", inch, "--voxel-size", "0.1"});
-  EXPECT_TRUE(says(refused_sweep("mm.ist", "inch.ist"),
-                   inch + ": the tree is in inch, and " + mm + " is in mm"));
+  EXPECT_TRUE(
+      says(refused_sweep("mm.ist", "inch.ist"), inch + " is in inch, and " + mm + " is in mm"));
   const std::string scene = write(
       "scene.toml",
       "unit = \"mm\"\n[fixed]\nfile = \"mm.ist\"\n[held]\nfile = \"inch.ist\"\n[device]\n"

@@ -68,10 +68,15 @@ class SweepCommand : public CliTest {
                            const std::vector<std::string>& more = {}) const {
     return ist_well(arguments(file, folder, more));
   }
-  /// Makes all parts in one process, and merges them.
+  /// Makes all parts in one process, which merges them.
   void make_whole(const std::string& file, const std::string& folder) const {
     sweep_well(file, folder);
-    sweep_well(file, folder, {"--merge"});
+    EXPECT_TRUE(exists(folder + "/rows.npy"));
+  }
+  /// Removes the table of a folder, so that the next call merges.
+  void remove_table(const std::string& folder) const {
+    std::filesystem::remove(path(folder + "/rows.npy"));
+    std::filesystem::remove(path(folder + "/manifest.json"));
   }
 
   using Files = std::map<std::string, std::string>;

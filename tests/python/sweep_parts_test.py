@@ -2,6 +2,7 @@
 
 import contextlib
 import copy
+import fcntl
 import os
 import pickle
 import signal
@@ -53,6 +54,19 @@ class Parts(Sweeps):
         self.assertEqual([len(part) for part in parts], [10, 10, 10, 10, 5])
         self.assertEqual(np.load(sweep.folder / "rows.npy").tobytes(), np.concatenate(parts).tobytes())
         self.assertTrue((sweep.folder / "manifest.json").exists())
+        written = (sweep.folder / "rows.npy").stat().st_mtime_ns
+        self.assertEqual(sweep.merge(), (45, [], []))
+        self.assertEqual((sweep.folder / "rows.npy").stat().st_mtime_ns, written)
+
+    def test_a_merge_beside_another_one_is_refused(self):
+        sweep = self.job(box_poses(2, 10))
+        sweep.run(0)
+        with open(sweep.folder / "rows.start", "w", encoding="ascii") as mark:
+            fcntl.flock(mark, fcntl.LOCK_EX)
+            with self.assertRaisesRegex(ist.BusyError, "another process is merging"):
+                sweep.merge()
+        self.assertEqual(sweep.merge().rows, 10)
+        self.assertFalse((sweep.folder / "rows.start").exists())
 
     def test_no_pose_is_a_table_of_no_rows(self):
         sweep = self.job(box_poses(1, 0))
@@ -247,7 +261,7 @@ class Misuse(Sweeps):
         self.refuses(ist.InputError, "zero", ist.Sweep, self.job(GRID).path, "a\0b")
         self.refuses(TypeError, "", ist.Sweep, 5)
         self.refuses(ist.InputError, [".toml:", "answers", "touch"], self.job, GRID, ["touch"])
-        self.refuses(ist.FileError, "nobody.ist", self.job, GRID, bodies=BODIES.replace("lower", "nobody"))
+        self.refuses(ist.InputError, [".toml:", "no file", "nobody.ist", "tree"], self.job, GRID, bodies=BODIES.replace("lower", "nobody"))
         self.refuses(ist.InputError, ["hash", "changed"], self.job, GRID, bodies=BODIES.replace("[moving]", f'hash = "{"0" * 32}"\n[moving]'))
         self.refuses(ist.InputError, "poses", self.job, "")
 

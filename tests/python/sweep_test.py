@@ -2,7 +2,7 @@
 
 import numpy as np
 import unittest
-from support import turn
+from support import box, turn
 from sweep_support import ABOUT, ANSWERS, GRID, Moved, Sweeps, box_poses
 
 import ist
@@ -61,13 +61,57 @@ class Poses(Sweeps):
                 self.assertEqual(sweep.poses(first, count).tobytes(), whole[first : first + count].tobytes())
 
 
+POSE = ("x", "y", "z", "qx", "qy", "qz", "qw")
+
+
+def matrices(table):
+    """The poses of a table's columns as matrices, (N, 4, 4)."""
+    x, y, z, w = (table[name] for name in POSE[3:])
+    poses = np.tile(np.eye(4), (len(table), 1, 1))
+    poses[:, :3, 3] = np.stack([table[name] for name in "xyz"], axis=1)
+    poses[:, :3, :3] += 2 * np.stack([
+        np.stack([-y * y - z * z, x * y - w * z, x * z + w * y], axis=1),
+        np.stack([x * y + w * z, -x * x - z * z, y * z - w * x], axis=1),
+        np.stack([x * z - w * y, y * z + w * x, -x * x - y * y], axis=1)], axis=1)
+    return poses
+
+
 class Rows(Sweeps):
+    def test_a_table_has_its_poses(self):
+        grid = GRID.replace("from = -4", 'name = "turned"\nfrom = -4').replace("from = -3", 'name = "height"\nfrom = -3')
+        for text in (box_poses(8, 60) + 'turns = "any"\n', box_poses(9, 60), grid):
+            sweep = self.job(text, settings="rows_per_part = 60")
+            sweep.run(0)
+            table = np.load(sweep.folder / "part-000000.npy")
+            np.testing.assert_allclose(matrices(table), sweep.poses(0, sweep.rows), atol=1e-13)
+            self.assertGreaterEqual(table["qw"].min(), 0)
+        np.testing.assert_array_equal(table["turned"], np.repeat([-4, -0.5, 3], 8))
+        np.testing.assert_array_equal(table["height"], np.tile(np.repeat([-3 + (0.3 - -3) * (step / 3) for step in range(3)] + [0.3], 2), 3))
+
+    def test_a_mesh_answers_as_its_tree(self):
+        upper = self.place / "upper.stl"
+        (vertices, faces) = box([-2, -2, 0], [2, 2, 1.5])
+        triangles = np.asarray(vertices, "<f4")[np.asarray(faces)]
+        records = np.zeros(len(triangles), [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("rest", "<u2")])
+        records["corners"] = triangles
+        upper.write_bytes(bytes(80) + np.uint32(len(records)).tobytes() + records.tobytes())
+        ist.build(upper, 0.25).save(self.place / "of_mesh.ist")
+        tables = []
+        for fixed in ('"of_mesh.ist"', '{ file = "upper.stl", voxel_size = 0.25 }'):
+            sweep = self.job(box_poses(3, 40), ANSWERS, f"rows_per_part = 40\ntolerance = 0.01\nfixed = {fixed}\nmoving = 'lower.ist'", "")
+            sweep.run(0)
+            tables.append((sweep.folder / "part-000000.npy").read_bytes())
+        self.assertEqual(*tables)
+        bodies = 'fixed = "upper.stl"\nmoving = "lower.ist"\n'
+        self.refuses(ist.InputError, [".toml:", "fixed", "need voxels", "voxel_size"], self.job, GRID, ["contacts"], bodies=bodies)
+
     def test_columns_are_those_of_the_answers(self):
-        first = [("index", "<u8"), ("status", "<i4"), ("complete", "<i4")]
+        pose = [(name, "<f8") for name in POSE]
+        first = [("index", "<u8"), *pose, ("status", "<i4"), ("complete", "<i4")]
         self.assertEqual(self.job(GRID, ["intersects"]).columns, np.dtype([*first, ("intersects", "<i4"), ("sphere_tests", "<u8")]))
         of_all = self.job(GRID, ANSWERS).columns
         self.assertEqual(of_all.itemsize, sum(of_all[name].itemsize for name in of_all.names))
-        self.assertEqual(set(of_all.names) - {"index"}, self.names_of_row())
+        self.assertEqual(set(of_all.names) - {"index", *POSE}, self.names_of_row())
 
     @staticmethod
     def names_of_row():
@@ -79,7 +123,8 @@ class Rows(Sweeps):
         rows = ist.Query(self.upper, self.lower).rows(sweep.poses(0, sweep.rows), **options)
         self.assertEqual(table.dtype, sweep.columns)
         np.testing.assert_array_equal(table["index"], np.arange(sweep.rows))
-        for name in set(table.dtype.names) - {"index"}:
+        np.testing.assert_allclose(matrices(table), sweep.poses(0, sweep.rows), atol=1e-14)
+        for name in set(table.dtype.names) - {"index", *POSE}:
             vector, _, axis = name.rpartition("_")
             expected = rows[vector][:, "xyz".index(axis)] if vector in ("force", "torque") else rows[name]
             self.assertEqual(table[name].tobytes(), expected.tobytes(), name)
@@ -110,7 +155,9 @@ class Rows(Sweeps):
         np.save(self.place / "bad.npy", poses)
         sweep = self.job('[poses]\nfile = "bad.npy"\n')
         sweep.run(0)
-        self.assertEqual(np.load(sweep.folder / "part-000000.npy")["status"].tolist(), [0, 0, ist.POSE_INVALID, 0, 0])
+        table = np.load(sweep.folder / "part-000000.npy")
+        self.assertEqual(table["status"].tolist(), [0, 0, ist.POSE_INVALID, 0, 0])
+        self.assertEqual(np.isnan(table["x"]).tolist(), [False, False, True, False, False])
 
 
 if __name__ == "__main__":

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "sweep/pose_source.h"
@@ -120,6 +122,24 @@ TEST(PoseGrid, IdentityHasEachNumber) {
   EXPECT_NE(with([](auto& o) { o[0].direction = {0, 0, 1}; }), known);
   EXPECT_NE(with([](auto& o) { o[0].count = 4; }), known);
   EXPECT_NE(with([](auto& o) { std::swap(o[0], o[1]); }), known);
+}
+
+TEST(PoseGrid, GivesTheValuesOfItsNamedAxes) {
+  PoseGrid::Axis opening = move(Eigen::Vector3d::UnitZ(), -1, 1, 5),
+                 side = move(Eigen::Vector3d::UnitX(), 0, 3, 4);
+  opening.name = "opening";
+  side.name = "side";
+  const PoseGrid grid({opening, turn(Eigen::Vector3d::UnitZ(), {0, 0, 0}, 0, 90, 3), side});
+  EXPECT_EQ(grid.value_names(), (std::vector<std::string>{"opening", "side"}));
+  for (std::uint64_t i = 0; i < grid.count(); ++i) {
+    std::array<double, 2> values = {};
+    grid.values(i, values);
+    EXPECT_EQ(values[0], PoseGrid::value_of(opening, i / 12)) << i;
+    EXPECT_EQ(values[1], PoseGrid::value_of(side, i % 4)) << i;
+  }
+  side.name = "other";
+  EXPECT_NE(PoseGrid({opening, side}).identity(),
+            PoseGrid({opening, move({1, 0, 0}, 0, 3, 4)}).identity());
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ TEST_F(SweepFileTest, HasDefaults) {
   EXPECT_EQ(file.stiffness, 1);
   EXPECT_FALSE(file.spheres);
   EXPECT_EQ(file.questions.budget.tests, RowQuestions().budget.tests);
-  EXPECT_EQ(file.fixed.tree, dir_.path() / "fixed.ist");
+  EXPECT_EQ(file.fixed.file, dir_.path() / "fixed.ist");
   EXPECT_EQ(file.fixed.hash, hash_of_file(dir_.path() / "fixed.ist"));
   EXPECT_EQ(file.fixed.hash.size(), 32U);
 }
@@ -52,6 +52,13 @@ TEST_F(SweepFileTest, AcceptsTheTreesOwnHash) {
       sweep_with("tree = \"moving.ist\"", "tree = \"moving.ist\"\nhash = \"" + hash + "\"");
   EXPECT_EQ(sound.identity().hash, sweep().identity().hash);
 }
+
+// A grid's axis of a name, in front of a table that no sweep file has.
+std::string named_axis(const std::string& name) {
+  return "[[poses.axes]]\nmove = [0, 0, 1]\nfrom = 0\nto = 1\ncount = 2\nname = \"" + name + "\"\n";
+}
+
+const std::string kRest = "[poses.boxes]";  // a table for the keys of the box
 
 struct BadSweep {
   std::string part, by;
@@ -80,7 +87,11 @@ TEST_F(SweepFileTest, WrongValuesAreRefusedWithLineAndRemedy) {
        "'turns_wihtin'", "did you mean 'turns_within'?"},
       {"rows_per_part = 4", "rows_per_part = 0", 3, "0", "1 to"},
       {"[fixed]\ntree = \"fixed.ist\"\n", "", 1, "no 'fixed'", "[fixed]"},
-      {"tree = \"fixed.ist\"", "file = \"fixed.ist\"", 4, "no 'tree'", "the name of a tree file"},
+      {"tree = \"fixed.ist\"", "files = \"fixed.ist\"", 5, "'files' in [fixed]", "'file'"},
+      {"tree = \"fixed.ist\"\n", "", 4, "[fixed] has no 'file'", "the name of a mesh or of a tree"},
+      {"[fixed]\ntree = \"fixed.ist\"", "fixed = 3", 4, "'fixed' in the file is 3", "[fixed]"},
+      {"tree = \"fixed.ist\"", "tree = \"fixed.ist\"\nfile = \"fixed.ist\"", 5, "both", "take out"},
+      {"fixed.ist", "gone.ist", 5, "there is no file", "check 'tree'"},
       {"tree = \"fixed.ist\"", "tree = \"fixed.ist\"\nhash = \"00\"", 6, "changed", "begin anew"},
       {"seed = 7", "seed = -7", 9, "-7", "from 0 on"},
       {"seed = 7", "sede = 7", 9, "'sede'", "'seed'"},
@@ -120,6 +131,15 @@ TEST_F(SweepFileTest, WrongValuesAreRefusedWithLineAndRemedy) {
       {"[poses.box]",
        "[[poses.axes]]\nmove = [0, 0, 1]\nfrom = 0\nto = 1\ncount = 0\n[poses.boxes]", 12, "0",
        "1 to"},
+      {"[poses.box]", named_axis("1st") + kRest, 13, "no name of a column", "a letter first"},
+      {"[poses.box]", named_axis("a b") + kRest, 13, "no name of a column",
+       "letters, digits and _"},
+      {"[poses.box]", named_axis("a23456789012345678901234") + kRest, 13, "no name of a column",
+       "at most 23"},
+      {"[poses.box]", named_axis("qw") + kRest, 13, "\"qw\", a column of all rows", "another name"},
+      {"[poses.box]", named_axis("area") + kRest, 13, "\"area\", a column", "another name"},
+      {"[poses.box]", named_axis("a") + named_axis("a") + kRest, 19, "that of another axis",
+       "another name"},
       {"count = 10", "count = 4000001", 3, "more than 1000000 parts", "rows_per_part = 5"},
   };
   for (const BadSweep& bad : all) {
@@ -138,15 +158,13 @@ TEST_F(SweepFileTest, WrongValuesAreRefusedWithLineAndRemedy) {
   }
 }
 
-TEST_F(SweepFileTest, MissingFilesAreNamed) {
-  const auto missing = [&](std::string_view part, std::string_view by, const char* name) {
-    const auto error = error_of([&] { static_cast<void>(sweep_with(part, by)); });
-    ASSERT_TRUE(error);
-    EXPECT_EQ(error->code(), ErrorCode::kFileUnreadable);
-    EXPECT_NE(std::string(error->what()).find(name), std::string::npos) << error->what();
-  };
-  missing("fixed.ist", "gone.ist", "gone.ist");
-  missing("[poses.box]", "[poses]\nfile = \"gone.npy\"\n[moving.box]", "gone.npy");
+TEST_F(SweepFileTest, AMissingFileOfPosesIsNamed) {
+  const auto error = error_of([&] {
+    static_cast<void>(sweep_with("[poses.box]", "[poses]\nfile = \"gone.npy\"\n[moving.box]"));
+  });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kFileUnreadable);
+  EXPECT_NE(std::string(error->what()).find("gone.npy"), std::string::npos) << error->what();
 }
 
 // Every number and name that the rows depend on is in the hash of the sweep.
@@ -185,6 +203,12 @@ TEST_F(SweepFileTest, TheSameContentIsTheSameSweep) {
   const std::string hash = sweep().identity().hash;
   std::filesystem::copy(dir_.path() / "moving.ist", dir_.path() / "other.ist");
   EXPECT_EQ(sweep_with("moving.ist", "other.ist").identity().hash, hash);
+  EXPECT_EQ(sweep_with("tree = \"fixed.ist\"", "file = \"fixed.ist\"").identity().hash, hash);
+  EXPECT_EQ(sweep_with("rows_per_part = 4\n[fixed]\ntree = \"fixed.ist\"",
+                       "rows_per_part = 4\nfixed = \"fixed.ist\"")
+                .identity()
+                .hash,
+            hash);
   EXPECT_EQ(sweep_with("tolerance = 0.01\n", "tolerance = 1e-2 # mm\n\n").identity().hash, hash);
   EXPECT_EQ(sweep_with("count = 10", "count = 1e1").identity().hash, hash);
   EXPECT_EQ(sweep_with("seed = 7", "seed = 7.0").identity().hash, hash);

@@ -52,6 +52,27 @@ TEST_F(SweepFolders, OfAnotherVersionAreRefused) {
   EXPECT_NE(std::string(error->what()).find("version 0.0.9"), std::string::npos) << error->what();
 }
 
+// The first layout had no poses in its rows, and its sweep.json did not name the layout.
+TEST_F(SweepFolders, OfAnotherLayoutAreRefused) {
+  const Sweep job = sweep();
+  const SweepFolder parts = folder(job);
+  const std::string sound = file_content(parts.path() / "sweep.json"), now = " \"layout\": 2,\n";
+  ASSERT_NE(sound.find(now), std::string::npos);
+  const auto refusal = [&](const std::string& line) {
+    std::string record = sound;
+    record.replace(record.find(now), now.size(), line);
+    std::ofstream(parts.path() / "sweep.json") << record;
+    const auto error = error_of([&] { static_cast<void>(folder(job)); });
+    EXPECT_TRUE(error && error->code() == ErrorCode::kInputInvalid);
+    return std::string(error ? error->what() : "");
+  };
+  EXPECT_NE(refusal("").find("sweep.json: an older version of ist began this folder, and its rows "
+                             "have other columns (layout 1, and this is 2): "),
+            std::string::npos);
+  EXPECT_NE(refusal(" \"layout\": 3,\n").find("a newer version of ist"), std::string::npos);
+  EXPECT_NE(refusal(" \"layout\": \"2\",\n").find("damaged"), std::string::npos);
+}
+
 TEST_F(SweepFolders, ThatCannotBeMadeAreBadInput) {
   const Sweep job = sweep();
   dir_.write("file", "");

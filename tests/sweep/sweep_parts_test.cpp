@@ -40,8 +40,8 @@ TEST_F(SweepParts, HaveTheRowsOfTheSingleCalls) {
   std::string rows;
   for (std::uint64_t part = 0; part < 3; ++part) rows += rows_in(parts, part, job.layout());
   ASSERT_EQ(rows.size(), 10 * job.layout().bytes);
-  const SphereTree fixed = read_tree(job.file().fixed.tree),
-                   moving = read_tree(job.file().moving.tree);
+  const SphereTree fixed = read_tree(job.file().fixed.file),
+                   moving = read_tree(job.file().moving.file);
   int met = 0;
   for (std::uint64_t i = 0; i < 10; ++i) {
     Eigen::Isometry3d pose;
@@ -59,7 +59,7 @@ TEST_F(SweepParts, HaveTheRowsOfTheSingleCalls) {
     row.penetration = penetration(deep, pose, 0.01);
     met += row.intersects->answer == Answer::kYes;
     std::vector<std::byte> known(job.layout().bytes);
-    write_row(job.file().questions, i, numbers_of(row, 1), known);
+    write_row(job.file().questions, {.index = i, .pose = pose}, numbers_of(row, 1), known);
     EXPECT_EQ(std::memcmp(known.data(), rows.data() + i * known.size(), known.size()), 0) << i;
   }
   EXPECT_GT(met, 0);
@@ -162,7 +162,8 @@ TEST_F(SweepParts, OfATreeThatChangedAreNotMade) {
   const auto error = error_of([&] { job.run_part(parts, 0, 1); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kInputInvalid);
-  EXPECT_NE(std::string(error->what()).find("moving.ist: the tree changed"), std::string::npos);
+  EXPECT_NE(std::string(error->what()).find("moving.ist changed since the sweep was opened"),
+            std::string::npos);
   EXPECT_EQ(names_in(parts.path()), std::vector<std::string>{"sweep.json"});
 }
 

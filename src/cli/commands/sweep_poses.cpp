@@ -106,37 +106,67 @@ Made run_share(const Sweep& sweep, const SweepArguments& options, const Share& s
   return result;
 }
 
+// Merges the parts under a progress bar.
+MergeResult merged(const SweepArguments& options, const Sweep& sweep, TableCheck check) {
+  const SweepFolder folder(options.folder, sweep.identity(), sweep.layout(),
+                           SweepFolder::Access::kRead);
+  ProgressBar bar;
+  return merge_parts(folder, sweep.layout(), check, shown_by(bar, "merging parts"));
+}
+
+// Merges if this process or an earlier one has made the last part. Several processes may see that;
+// one of them merges.
+MergeResult merged_if_made(const SweepArguments& options, const Sweep& sweep) {
+  const SweepFolder folder(options.folder, sweep.identity(), sweep.layout(),
+                           SweepFolder::Access::kRead);
+  return folder.has_all_parts() ? merged(options, sweep, TableCheck::kSize) : MergeResult();
+}
+
+std::string table_line(const SweepArguments& options, const MergeResult& result) {
+  switch (result.outcome) {
+    case MergeOutcome::kIncomplete:
+      return "rows    not merged yet: parts are missing";
+    case MergeOutcome::kBusy:
+      return "rows    another process is merging them";
+    default:
+      return fmt::format("rows    {} in {}", result.rows, (options.folder / "rows.npy").string());
+  }
+}
+
 void run(const SweepArguments& options, const Sweep& sweep) {
   const Made made = run_share(sweep, options, share_of(options.share));
+  const MergeResult table = made.given_up.empty() ? merged_if_made(options, sweep) : MergeResult();
   if (options.json) {
-    print_json(sweep, {{"made", made.made}, {"there", made.there}, {"given_up", made.given_up}});
+    print_json(sweep, {{"made", made.made},
+                       {"there", made.there},
+                       {"given_up", made.given_up},
+                       {"rows", table.rows}});
   } else {
-    fmt::print("parts   made {}, there before {}, given up {}\n", made.made.size(),
-               made.there.size(), made.given_up.size());
+    fmt::print("parts   made {}, there before {}, given up {}\n{}\n", made.made.size(),
+               made.there.size(), made.given_up.size(), table_line(options, table));
   }
   if (made.given_up.empty()) return;
   throw Failure(kFailed, given_up_text(made.given_up));
 }
 
 void merge(const SweepArguments& options, const Sweep& sweep) {
-  const SweepFolder folder(options.folder, sweep.identity(), sweep.layout(),
-                           SweepFolder::Access::kRead);
-  const MergeResult merged = [&] {
-    ProgressBar bar;
-    return merge_parts(folder, sweep.layout(), shown_by(bar, "merging parts"));
-  }();
+  const MergeResult result = merged(options, sweep, TableCheck::kChecksum);
+  if (result.outcome == MergeOutcome::kBusy) {
+    fail_merging({options.folder, sweep.identity(), sweep.layout(), SweepFolder::Access::kRead});
+  }
   if (options.json) {
     print_json(sweep,
-               {{"rows", merged.rows}, {"missing", merged.missing}, {"given_up", merged.given_up}});
-  } else if (merged.whole()) {
-    fmt::print("rows    {} in {}\n", merged.rows, (options.folder / "rows.npy").string());
+               {{"rows", result.rows}, {"missing", result.missing}, {"given_up", result.given_up}});
+  } else if (result.outcome != MergeOutcome::kIncomplete) {
+    const bool was_there = result.outcome == MergeOutcome::kWasThere;
+    fmt::print("{}{}\n", table_line(options, result), was_there ? ": nothing is left to do" : "");
   }
   std::string lacks;
-  if (!merged.missing.empty()) {
-    lacks = fmt::format("parts are missing, and nothing was merged: {}", ranges(merged.missing));
+  if (!result.missing.empty()) {
+    lacks = fmt::format("parts are missing, and nothing was merged: {}", ranges(result.missing));
   }
-  if (!merged.given_up.empty()) {
-    lacks += (lacks.empty() ? "" : "\nist: ") + given_up_text(merged.given_up);
+  if (!result.given_up.empty()) {
+    lacks += (lacks.empty() ? "" : "\nist: ") + given_up_text(result.given_up);
   }
   if (!lacks.empty()) throw Failure(kFailed, lacks);
 }
@@ -159,7 +189,7 @@ void add_sweep(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "sweep", "Ask the same at millions of poses, in parts that any process may make");
   const auto options = std::make_shared<SweepArguments>();
-  add_file(*command, "SWEEP", options->file, "sweep file (.toml): trees, poses and questions")
+  add_file(*command, "SWEEP", options->file, "sweep file (.toml): bodies, poses and questions")
       ->required();
   command
       ->add_option("-o,--output", options->folder, "folder of the parts, made where it is missing")
@@ -175,20 +205,22 @@ void add_sweep(CLI::App& app) {
                       ->check(CLI::Range(0, 1024))
                       ->capture_default_str();
   auto* merge_flag = command->add_flag(
-      "--merge", options->merge, "merge all parts into rows.npy; exit code 1 if a part is missing");
+      "--merge", options->merge,
+      "merge the parts into rows.npy and make no part; exit code 1 if one is missing");
   auto* status = command->add_flag("--status", options->status, "list how the parts stand");
   command->add_flag("--verify", options->verify, "compare the checksums of all parts too")
       ->needs(status);
   command->add_flag("--json", options->json, "print the result as JSON");
   merge_flag->excludes(status)->excludes(share)->excludes(threads);
   status->excludes(share)->excludes(threads);
-  add_example(*command,
-              "A part that is there stays. One that was begun and lost three times is given up.\n"
-              "Examples: ist sweep job.toml -o job --threads 8\n"
-              "          ist sweep job.toml -o job --share 3/16\n"
-              "          ist sweep job.toml -o job --merge\n"
-              "docs/sweeps.md describes the sweep file, and how dask, Slurm and GNU parallel run "
-              "shares.");
+  add_example(
+      *command,
+      "A part that is there stays. A part that was begun and lost three times is given up.\n"
+      "The process that makes the last missing part merges all parts into rows.npy.\n"
+      "Examples: ist sweep job.toml -o job --threads 8\n"
+      "          ist sweep job.toml -o job --share 3/16\n"
+      "docs/sweeps.md describes the sweep file, and how dask, Slurm and GNU parallel run "
+      "shares.");
   command->callback([options] {
     static_cast<void>(share_of(options->share));
     const Sweep sweep(options->file);

@@ -74,8 +74,8 @@ FolderStatus status_of(const Sweep& sweep, const std::filesystem::path& path, bo
 void print_json(const Sweep& sweep, const nlohmann::ordered_json& result) {
   nlohmann::ordered_json header =
       header_line("sweep", NamedSources{{"sweep", source_of(sweep.file().file)}});
-  const auto add = [&](const char* name, const SweepFile::Body& body) {
-    header[name] = {{"file", source_name(body.tree.filename().string())}, {"hash", body.hash}};
+  const auto add = [&](const char* name, const SweepBody& body) {
+    header[name] = {{"file", source_name(body.file.filename().string())}, {"hash", body.hash}};
   };
   add("fixed", sweep.file().fixed);
   add("moving", sweep.file().moving);
@@ -95,8 +95,8 @@ void print_status(const Sweep& sweep, const FolderStatus& status, bool json) {
     return;
   }
   fmt::print("sweep    {}\n", sweep.identity().hash);
-  fmt::print("fixed    {} {}\n", sweep.file().fixed.hash, sweep.file().fixed.tree.string());
-  fmt::print("moving   {} {}\n", sweep.file().moving.hash, sweep.file().moving.tree.string());
+  fmt::print("fixed    {} {}\n", sweep.file().fixed.hash, sweep.file().fixed.file.string());
+  fmt::print("moving   {} {}\n", sweep.file().moving.hash, sweep.file().moving.file.string());
   fmt::print("rows     {} of {} bytes\n", sweep.rows(), sweep.layout().bytes);
   fmt::print("parts    {} of {} done, in {} of computing\n", status.done, sweep.parts(),
              duration_text(status.seconds));

@@ -16,10 +16,12 @@ ScopedCancellation::ScopedCancellation(const std::atomic<bool>& asked) noexcept
 
 ScopedCancellation::~ScopedCancellation() { asked_here = before_; }
 
+bool is_cancelled() noexcept {
+  return asked_here != nullptr && asked_here->load(std::memory_order_relaxed);
+}
+
 void cancellation_point() {
-  if (asked_here != nullptr && asked_here->load(std::memory_order_relaxed)) {
-    throw Error(ErrorCode::kCancelled, "the work was ended by its caller");
-  }
+  if (is_cancelled()) throw Error(ErrorCode::kCancelled, "the work was ended by its caller");
 }
 
 }  // namespace ist

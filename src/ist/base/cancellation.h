@@ -2,6 +2,8 @@
 
 #include <atomic>
 
+#include "ist/base/api.h"
+
 namespace ist {
 
 /// Lets another thread end long work of this one, as a cancellation point of POSIX threads does:
@@ -18,9 +20,12 @@ class ScopedCancellation {
   const std::atomic<bool>* before_;
 };
 
-/// Throws kCancelled where this thread was asked to end. Readers and writers of files call it at
-/// each face and each 4 MiB, those of trees in memory at each array, a check of a mesh between its
-/// parts, and a world that is prepared at each pair. Cost: 2 ns.
+/// Returns whether this thread was asked to end. Cost: 2 ns.
+[[nodiscard]] IST_LOOP_API bool is_cancelled() noexcept;
+
+/// Throws kCancelled if this thread was asked to end. Readers and writers of files call it at each
+/// face and each 4 MiB, readers of trees in memory at each array, a check of a mesh between its
+/// parts, and the preparation of a world at each pair. Cost: 2 ns.
 void cancellation_point();
 
 }  // namespace ist

@@ -108,6 +108,17 @@ bool TableReader::has(std::string_view key) {
   return is_there;
 }
 
+bool TableReader::is_text(std::string_view key) const {
+  const TomlEntry* found = entry(key);
+  return found != nullptr && std::holds_alternative<std::string>(found->value.content);
+}
+
+std::string TableReader::place(std::string_view key) const {
+  const TomlEntry* found = entry(key);
+  return fmt::format("{}:{}: '{}' in {}", file_.string(),
+                     found == nullptr ? table_.line : found->value.line, key, name());
+}
+
 double TableReader::number_of(const TomlValue& value, std::string_view key,
                               const NumberRange& range) const {
   const std::optional<double> number = as_number(value);

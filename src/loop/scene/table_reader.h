@@ -27,7 +27,7 @@ struct NumberRange {
 
 /// Reads the values of one table by key. A value of another type or out of range throws
 /// kInputInvalid with file, line and remedy. The reader notes each key that it is asked for in
-/// TomlTable::known, by which refuse_unknown() finds the unknown ones.
+/// TomlTable::known, so that refuse_unknown() finds unknown keys.
 class TableReader {
  public:
   /// Both arguments must outlive the reader.
@@ -40,6 +40,8 @@ class TableReader {
   [[nodiscard]] const std::string& path() const { return path_; }
 
   [[nodiscard]] bool has(std::string_view key);
+  /// Whether the value of a key is a text. The key need not be there.
+  [[nodiscard]] bool is_text(std::string_view key) const;
   /// A number. Without `otherwise` the key is required.
   [[nodiscard]] double number(std::string_view key, const NumberRange& range);
   [[nodiscard]] double number(std::string_view key, const NumberRange& range, double otherwise);
@@ -75,6 +77,8 @@ class TableReader {
   /// Throws for a wrong value, at its line, or at the table's if the key is missing.
   [[noreturn]] void fail(std::string_view key, std::string_view wrong,
                          std::string_view remedy) const;
+  /// Returns the place of a key for messages: "job.toml:5: 'file' in [fixed]".
+  [[nodiscard]] std::string place(std::string_view key) const;
   /// Throws for a missing key, or for a key that looks like a misspelling of it.
   [[noreturn]] void fail_missing(std::string_view key, std::string_view what) const;
   /// Throws for a key that was not asked for, if it looks like a missing one.

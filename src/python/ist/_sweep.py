@@ -31,26 +31,25 @@ def begun(folder):
 
 
 class Sweep(Handle):
-    """A sweep, by its file: two trees, poses, and the questions at each (docs/sweeps.md). Any number of threads may share it.
+    """A sweep, by its file: two bodies, poses, and the questions at each (docs/sweeps.md). Any number of threads may share it.
 
     The parts may be made by any process on any machine, in any order; their rows are the same bytes. folder: where they are;
     by default the file's name with the ending .sweep. A pickled sweep is the absolute names of its file and its folder, and
-    whoever unpickles it reads the file anew. progress: called while the trees' files are read for their hashes. Raises
+    whoever unpickles it reads the file anew. progress: called while the bodies' files are read for their hashes. Raises
     InputError, which names the line, and FileError.
 
     >>> import ist, numpy, pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as place:
     ...     for name, jaw in zip(["upper", "lower"], ist.jaws()):
-    ...         ist.build(jaw, voxel_size=1).save(f"{place}/{name}.ist")
+    ...         ist.build(jaw, voxel_size=1).save(f"{place}/{name}.ist")  # a mesh file will do as well
     ...     job = pathlib.Path(place, "job.toml")
     ...     _ = job.write_text('''
     ... answers = ["intersects"]
     ... rows_per_part = 3
-    ... [fixed]
-    ... tree = "upper.ist"
-    ... [moving]
-    ... tree = "lower.ist"
+    ... fixed = "upper.ist"
+    ... moving = "lower.ist"
     ... [[poses.axes]]
+    ... name = "height"
     ... move = [0, 0, 1]
     ... from = -4
     ... to = 0
@@ -64,8 +63,8 @@ class Sweep(Handle):
     0 made
     1 made
     5 rows
-    >>> (table["intersects"] == ist.YES).tolist()
-    [False, False, False, True, True]
+    >>> table["height"][table["intersects"] == ist.YES].tolist(), table["z"].tolist()
+    ([-1.0, 0.0], [-4.0, -3.0, -2.0, -1.0, 0.0])
     """
 
     _free = LIBRARY.ist_sweep_free
@@ -104,7 +103,7 @@ class Sweep(Handle):
 
         threads: the most of the whole process meanwhile; 0: one for each core. progress: called with the share of the part that
         is done; what it raises ends the call, and nothing half-made is left. Raises BusyError for a part
-        that somebody is making now, and InputError for the folder of another sweep, a damaged part, and a tree that changed since.
+        that somebody is making now, and InputError for the folder of another sweep, a damaged part, and a body that changed since.
         """
         number, most = count_of(part, "part"), count_of(threads, "threads", 1024)
         place, result = self._place(folder), PartInfo()
@@ -120,8 +119,9 @@ class Sweep(Handle):
         """Merges the parts into rows.npy of the folder, the table of all rows, and writes all checksums to manifest.json.
 
         If a part is missing or given up, nothing is written, and the answer names such parts. progress: called with the
-        share that is done; if it raises an exception, the call ends with it. Raises InputError if a part is damaged. Cost: the
-        time to read and write all rows.
+        share that is done; if it raises an exception, the call ends with it. If the table is there and has its checksum, the
+        call only says so. Raises InputError if a part is damaged, and BusyError if another process is merging. Cost: the time
+        to read and write all rows.
         """
         place, result = self._place(folder), SweepMergeResult()
         while True:

@@ -4,9 +4,9 @@
 /**
  * @file
  * Sweeps: the same questions about two bodies at up to 10^12 poses, in parts that any process, on
- * any machine, may make. A sweep file names the trees, the poses and the questions; a folder holds
- * the parts, which merge into one table. The conventions of ist_c.h apply. Every function may be
- * called from any number of threads on one sweep.
+ * any machine, may make. A sweep file names the bodies, the poses and the questions; a folder
+ * holds the parts, which merge into one table. The conventions of ist_c.h apply. Every function may
+ * be called from any number of threads on one sweep.
  */
 
 #include "ist/capi/ist_c.h"
@@ -18,9 +18,9 @@ extern "C" {
 /** A sweep as its file describes it. */
 typedef struct ist_sweep ist_sweep;
 
-/** Reads a sweep file, and computes the hashes of the trees, and of the poses, that it names.
+/** Reads a sweep file, and computes the hashes of the meshes, trees and poses that it names.
  * `sweep` takes NULL after an error. Errors: IST_FILE_UNREADABLE, IST_INPUT_INVALID with
- * file, line and remedy, the errors of trees, IST_CANCELLED. Cost: that of reading the files. */
+ * file, line and remedy, the errors of trees, IST_CANCELLED. Cost: reads the files. */
 IST_C_API ist_status ist_sweep_open(const char* path, const ist_progress* progress,
                                     ist_sweep** sweep) IST_NOEXCEPT;
 
@@ -62,7 +62,7 @@ IST_C_API ist_status ist_sweep_get_column(const ist_sweep* sweep, uint64_t colum
                                           ist_sweep_column* info) IST_NOEXCEPT;
 
 /** Computes `count` poses from number `first` on, 16 numbers each. Errors: IST_ARGUMENT_INVALID
- * beyond the last; IST_INPUT_INVALID where the file of poses changed. Cost: below 1 us a pose. */
+ * beyond the last; IST_INPUT_INVALID if the file of poses changed. Cost: below 1 us a pose. */
 IST_C_API ist_status ist_sweep_get_poses(const ist_sweep* sweep, uint64_t first, size_t count,
                                          double* poses) IST_NOEXCEPT;
 
@@ -88,19 +88,19 @@ typedef struct ist_sweep_part {
 /** Makes part `part`, from 0, in `folder`, which is made where it is missing. A part that is there,
  * or was given up, stays as it is; `result` says which. `threads`: the most, of the whole process
  * meanwhile; 0: all cores. The same bytes come of every process and number of threads. Errors:
- * IST_ARGUMENT_INVALID beyond the last part; IST_PART_BUSY where somebody else is making the part
+ * IST_ARGUMENT_INVALID beyond the last part; IST_PART_BUSY if somebody else is making the part
  * now; IST_INPUT_INVALID for a folder of another sweep, for one that the user may not write to, for
- * a damaged part, and for a tree that changed since; the errors of trees; IST_FILE_UNREADABLE,
- * IST_FILE_UNWRITABLE, IST_TRIANGLES_MISSING, IST_POLICY_MISSING, IST_MEMORY_LIMIT, IST_CANCELLED.
- * Nothing half-made stays. Cost: that of ist_query_rows; the first part of a sweep loads the trees.
- */
+ * a damaged part, and for a body that changed since; the errors of meshes and trees;
+ * IST_FILE_UNREADABLE, IST_FILE_UNWRITABLE, IST_TRIANGLES_MISSING, IST_POLICY_MISSING,
+ * IST_MEMORY_LIMIT, IST_CANCELLED. Nothing half-made stays. Cost: as ist_query_rows. The first part
+ * of a sweep loads the trees, and builds the trees of meshes. */
 IST_C_API ist_status ist_sweep_run_part(const ist_sweep* sweep, const char* folder, uint64_t part,
                                         int32_t threads, const ist_progress* progress,
                                         ist_sweep_part* result) IST_NOEXCEPT;
 
 /** Looks how a part stands. With `verify` other than 0 its file is read and its checksum compared.
  * Errors: IST_ARGUMENT_INVALID beyond the last part; IST_INPUT_INVALID for a folder or a part of
- * another sweep; IST_FILE_UNREADABLE for a folder in which nobody has begun. */
+ * another sweep; IST_FILE_UNREADABLE if nobody has begun in the folder. */
 IST_C_API ist_status ist_sweep_get_part(const ist_sweep* sweep, const char* folder, uint64_t part,
                                         int32_t verify, ist_sweep_part* result) IST_NOEXCEPT;
 
@@ -115,10 +115,12 @@ typedef struct ist_sweep_merge_result {
 
 /** Merges the parts into rows.npy of the folder, and writes all checksums to manifest.json. If a
  * part is missing or given up, the call writes nothing and returns IST_OK with the number of such
- * parts; ist_sweep_get_part finds them. Errors: IST_FILE_UNREADABLE if nobody has begun in the
- * folder; IST_INPUT_INVALID if the folder or a part belongs to another sweep, if a part is damaged,
- * and if the user may not write to the folder; IST_FILE_UNWRITABLE, IST_CANCELLED. Cost: the time
- * to read and write all rows; memory of 10 MB, and 200 bytes a part. */
+ * parts; ist_sweep_get_part finds them. If the table is there and has its checksum, the call writes
+ * nothing either. Errors: IST_PART_BUSY if another process is merging; IST_FILE_UNREADABLE if
+ * nobody has begun in the folder; IST_INPUT_INVALID if the folder or a part belongs to another
+ * sweep, if a part is damaged, and if the user may not write to the folder; IST_FILE_UNWRITABLE,
+ * IST_CANCELLED. Cost: the time to read and write all rows; memory of 10 MB, and 400 bytes a part.
+ */
 IST_C_API ist_status ist_sweep_merge(const ist_sweep* sweep, const char* folder,
                                      const ist_progress* progress,
                                      ist_sweep_merge_result* result) IST_NOEXCEPT;
