@@ -92,7 +92,7 @@ void merge_part(const SweepFolder& folder, const RowLayout& layout, std::uint64_
 std::string checksum_of_table(const SweepFolder& folder, const RowLayout& layout,
                               const Reached& proceed) {
   InputFile file(table_file(folder));
-  ContentHash hash;
+  Checksum hash;
   std::vector<std::byte> block(kMergedAtOnce * layout.bytes);
   for (std::uint64_t rows = 0;; rows += kMergedAtOnce) {
     const std::size_t bytes = file.read(block.data(), block.size());
