@@ -96,7 +96,7 @@ std::vector<std::unique_ptr<Effect>> effects_of(const std::set<std::string>& nam
   return effects;
 }
 
-// @param effects of "contact", "friction", "damping", "proximity", "gravity", "snap"
+// @param effects their names in a scene
 BallOnBox make_ball_on_box(const std::set<std::string>& effects) {
   const ScopedFloatEnvironment environment;
   const Eigen::Vector3d size(40, 40, 10), move(0, 0, 11);

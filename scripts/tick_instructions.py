@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Counts the instructions of ticks with callgrind: a scene with all six effects loses one after the other, beside a program without
+"""Counts the instructions of ticks with callgrind: a scene with every effect loses one after the other, beside a program without
 a scene that builds the remaining ones by hand. An unnamed effect costs nothing, so both must give the same count and the same bits,
 and each removed effect must save instructions; otherwise this fails.
 

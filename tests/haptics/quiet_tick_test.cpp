@@ -14,7 +14,7 @@
 namespace ist::test {
 namespace {
 
-/// A ball that a hand puts on a box and pushes along, with all six effects. Millimetres, 1 kHz.
+/// A ball that a hand puts on a box and pushes along, with every effect. Millimetres, 1 kHz.
 [[nodiscard]] Scene scene_with_all_effects();
 
 Scene scene_with_all_effects() {

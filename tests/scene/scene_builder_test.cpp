@@ -127,7 +127,7 @@ TEST_F(PayOnlyForWhatIsNamed, EachEffectAloneHasWhatItNeeds) {
   }
 }
 
-// Each of the six taken out: what it alone needed is gone, and all else is as it was.
+// One effect is taken out: what it alone needed is gone, and all else is as it was.
 TEST_F(PayOnlyForWhatIsNamed, AnEffectThatIsTakenOutTakesItsMemoryAndStagesAway) {
   const BuiltScene all = with(kAll);
   expect_built_for(all, kAll);
