@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <span>
 #include <utility>
@@ -131,6 +132,8 @@ void QueryChecks::check_invalid(Query& query, ContactManifold& points,
   if (!query.has_triangles()) return;
   require(query.triangle_pairs(pose, {}).status == QueryStatus::kInvalidPose,
           "triangles meet at a pose that is none");
+  require(query.near_pairs(pose, 1, {}).status == QueryStatus::kInvalidPose,
+          "triangles are near at a pose that is none");
 }
 
 void QueryChecks::check_list(const Asked& asked) const {
@@ -189,6 +192,27 @@ void QueryChecks::check_points(Query& query, ContactManifold& points, const Aske
   }
 }
 
+// Pairs within no margin are those that intersect, and perhaps some that nearly do.
+void QueryChecks::check_near(Query& scalar, Query& best, const std::vector<TrianglePair>& meeting,
+                             const Eigen::Isometry3d& pose) const {
+  const auto ask = [&](Query& query) {
+    std::vector<NearPair> pairs(4'096);
+    const NearPairsResult result = query.near_pairs(pose, 0, pairs);
+    require(result.status == QueryStatus::kDone, "a rigid pose is refused by near pairs");
+    pairs.resize(std::min<std::size_t>(result.near_pairs, pairs.size()));
+    require(result.near_pairs >= meeting.size() || !result.complete,
+            "a pair intersects and is not near");
+    return pairs;
+  };
+  const std::vector<NearPair> pairs = ask(best), others = ask(scalar);
+  require(pairs.size() == others.size(), "the scalar form gives other near pairs");
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    require(std::memcmp(&pairs[k].distance, &others[k].distance, 7 * sizeof(double)) == 0 &&
+                pairs[k].triangles == others[k].triangles,
+            "the scalar form gives other near points");
+  }
+}
+
 void QueryChecks::check_exact(Query& scalar, Query& best, const Asked& asked,
                               const Eigen::Isometry3d& pose) const {
   const auto ask = [&](Query& query) {
@@ -209,6 +233,7 @@ void QueryChecks::check_exact(Query& scalar, Query& best, const Asked& asked,
                 pair.moving < parts_of(moving_).triangles->mesh.triangles.size(),
             "a pair is of no triangle");
   }
+  check_near(scalar, best, pairs, pose);
   const ist::Answer found = best.intersects(pose).answer;
   require(found == ist::Answer::kYes || found == ist::Answer::kNo, "triangles decide nothing");
   if (!built_) return;

@@ -38,6 +38,8 @@ class QueryChecks {
   void check_gap(Query& query, const Asked& asked, const Eigen::Isometry3d& pose) const;
   void check_points(Query& query, ContactManifold& points, const Asked& asked,
                     const Eigen::Isometry3d& pose) const;
+  void check_near(Query& scalar, Query& best, const std::vector<TrianglePair>& meeting,
+                  const Eigen::Isometry3d& pose) const;
   void check_exact(Query& scalar, Query& best, const Asked& asked,
                    const Eigen::Isometry3d& pose) const;
 

@@ -132,6 +132,7 @@ TEST_F(Misuse, OfAPoseIsAStatusOfEveryVerb) {
   EXPECT_EQ(query.distance(bad, 0.1).status, QueryStatus::kInvalidPose);
   EXPECT_EQ(query.distance(bad, 0.1).distance.upper, HUGE_VAL);
   EXPECT_EQ(query.triangle_pairs(bad, {}).status, QueryStatus::kInvalidPose);
+  EXPECT_EQ(query.near_pairs(bad, 0.1, {}).status, QueryStatus::kInvalidPose);
   EXPECT_STREQ(to_string(query.leaf_pairs(bad, {}).status), "invalid-pose");
 }
 
@@ -160,6 +161,9 @@ TEST_F(Misuse, OfARoughPoseSaysHowFarItWas) {
     expect_of(query.distance(rough, 0.1));
     expect_of(without.distance(rough, 0.1));
     expect_of(query.triangle_pairs(rough, {}));
+    expect_of(query.near_pairs(rough, 0.1, {}));
+    std::array<NearPair, Query::kMostNearParts> parts;
+    expect_of(query.near_parts(rough, {0, 0}, 0.1, parts));
     expect_of(ReferenceQuery(exact, exact, SpherePolicy::kSlab).leaf_pairs(rough, {}));
     EXPECT_EQ(query.intersects(rough).answer, is_rigid ? Answer::kYes : Answer::kUnknown);
   }

@@ -180,6 +180,20 @@ TEST_P(FloatEnvironmentOfAQuery, ChangesNoTrianglePair) {
                     });
 }
 
+TEST_P(FloatEnvironmentOfAQuery, ChangesNoNearPair) {
+  changes_no_answer("Query::near_pairs", 500, [](Query& query, const auto& pose, Record& record) {
+    std::vector<NearPair> pairs(1 << 12);
+    pairs.resize(query.near_pairs(pose, 0.05, pairs).near_pairs);
+    for (const NearPair& pair : pairs) {
+      record.add(pair.triangles);
+      record.add(pair.distance);
+      record.add(pair.fixed_point);
+      record.add(pair.moving_point);
+      record.add(pair.direction());
+    }
+  });
+}
+
 TEST_P(FloatEnvironmentOfAQuery, ChangesNoIntersection) {
   changes_no_answer("Query::intersects", 12, [](Query& query, const auto& pose, Record& record) {
     record.add(query.intersects(pose).answer);

@@ -143,6 +143,7 @@ TEST_F(TwoThreads, InOneQueryTheSecondIsToldThatItIsBusy) {
     EXPECT_EQ(query.intersects(pose_).answer, ist::Answer::kUnknown);
     EXPECT_EQ(query.distance(pose_, 0.1).status, QueryStatus::kBusy);
     EXPECT_EQ(query.triangle_pairs(pose_, triangles).status, QueryStatus::kBusy);
+    EXPECT_EQ(query.near_pairs(pose_, 0.1, {}).status, QueryStatus::kBusy);
     EXPECT_STREQ(to_string(QueryStatus::kBusy), "busy");
     // Nothing was changed.
     EXPECT_TRUE(none.pairs.empty());
