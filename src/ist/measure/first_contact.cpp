@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "ist/base/float_environment.h"
+#include "ist/base/pose.h"
 #include "ist/base/rigid_move.h"
 #include "ist/measure/point_search.h"
 #include "ist/measure/require.h"
+#include "ist/query/triangles/triangle_distance.h"
+#include "ist/query/triangles/triangle_visitors.h"
 
 namespace ist {
 namespace {
@@ -79,6 +83,7 @@ class Advance {
     if (start.answer == Answer::kYes) {
       name_triangles(0);
       if (is_busy_) return end(ContactStatus::kBusy, 0, 1);
+      found_.place = common_point(*found_.triangles);
       found_.distance = {0, 0};
       return end(ContactStatus::kTouchesAtStart, 0, 0);
     }
@@ -99,7 +104,11 @@ class Advance {
         const bool met = meet(then);
         if (met) name_triangles(then);
         if (is_busy_) return end(ContactStatus::kBusy, 0, 1);
-        if (met) return end(ContactStatus::kContact, grazed_at(at), then);
+        if (met) {
+          found_.place = nearest_;
+          if (nearest_) found_.normal = normal_;
+          return end(ContactStatus::kContact, grazed_at(at), then);
+        }
       }
       if (at >= slow_until_) {
         slow_until_ = near;
@@ -150,11 +159,14 @@ class Advance {
       if (note_busy(asked.status)) return 0;
       ++found_.distances;
       found_.distance = asked.distance;
+      nearest_ = asked.nearest;
       limit_tolerance(asked.narrowest);
       if (sharp <= kSharp * std::max(found_.distance.upper, kStuck * tolerance_)) break;
       sharp = kSharp * found_.distance.upper;
     } while (found_.distances < options_.budget.tests);
-    return found_.distance.lower - rounding_;
+    const double apart = found_.distance.lower - rounding_;
+    if (nearest_ && (apart > 0 || normal_.isZero(0))) normal_ = nearest_->direction();
+    return apart;
   }
   [[nodiscard]] bool meet(double at) {
     ++found_.verdicts;
@@ -166,6 +178,13 @@ class Advance {
     if (!note_busy(query_.triangle_pairs(motion_.at(at), first).status)) {
       found_.triangles = first[0];
     }
+  }
+  // Of triangles that intersect at the first pose.
+  [[nodiscard]] NearPair common_point(const TrianglePair& triangles) const {
+    const Eigen::Isometry3d start = *project_to_rigid(motion_.at(0));
+    return closest_points(corners_of(*query_.fixed().triangles(), triangles.fixed),
+                          MovedTriangles(*query_.moving().triangles(), start)[triangles.moving],
+                          triangles);
   }
   // Another thread uses the query: no answer counts.
   bool note_busy(QueryStatus status) {
@@ -180,6 +199,8 @@ class Advance {
   double way_;     // of the point that goes farthest
   double rounding_ = 0, tolerance_ = 0;
   FirstContact found_;
+  std::optional<NearPair> nearest_;  // of the last distance
+  Eigen::Vector3d normal_{0, 0, 0};
   bool is_busy_ = false;
   std::pair<double, double> graze_{0, 0};
   double slow_until_ = 0;

@@ -72,6 +72,13 @@ struct FirstContact {
   bool grazed = false;  ///< the surfaces grazed before, and may have met unseen
   /// Triangles that intersect at `upper`.
   std::optional<TrianglePair> triangles = std::nullopt;
+  /// The closest points before the contact, fixed coordinates: of the last pose that is known to be
+  /// free, `lower` unless `grazed`. With kTouchesAtStart, a common point of `triangles`. Empty
+  /// without a contact, and for bodies so far apart that their distance names no triangles.
+  std::optional<NearPair> place = std::nullopt;
+  /// The unit vector from the fixed to the moving body there, from the last distance that rounding
+  /// leaves certain. 0 without a place, with kTouchesAtStart, and if rounding hides each distance.
+  Eigen::Vector3d normal = {0, 0, 0};
   /// The distance of the surfaces at `lower`, mesh units; [0, infinity] if none was asked for.
   DistanceInterval distance{0, std::numeric_limits<double>::infinity()};
   /// The least tolerance that is reached at the last pose of the search, mesh units: rounding.
