@@ -72,6 +72,8 @@ ist_status status_of(const Call& call, QueryStatus status, const double* pose) {
     case QueryStatus::kBusy:              // a handle is used by one thread at a time
     case QueryStatus::kNotPrepared:       // of a world
     case QueryStatus::kNoSuchBody:        // of a world
+    case QueryStatus::kMarginInvalid:     // the margin was checked before
+    case QueryStatus::kNoSuchTriangle:    // of ist_query_near_parts, which reports it
       break;
   }
   return call.fail(IST_INTERNAL_ERROR, "a query returned an unknown status: report this bug");
