@@ -13,11 +13,11 @@ class LeafPairs(NamedTuple):
     """Pairs of voxels whose bounds overlap, sorted by fixed and then by moving voxel."""
 
     pairs: np.ndarray  # LEAF_PAIR
-    count: int  # all that were found, in the array or not
+    count: int  # all pairs found, in the array or not
     complete: bool  # False: a limit ended the search
     truncated: bool  # True: the array was too short and holds the first pairs
     level: int  # levels above the leaves at which the search ended
-    distance: Optional[Tuple[float, float]]  # the surfaces' distance lies between, where it is known
+    distance: Optional[Tuple[float, float]]  # the surfaces' distance lies between, if it is known
     resolution: float  # the surfaces in a pair are no farther apart
     sphere_tests: int
     rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|
@@ -56,7 +56,7 @@ class Distance(NamedTuple):
     narrowest: float  # no tolerance below this width can be reached here
     sphere_tests: int
     rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|
-    memory_of_nearest: Optional[bytearray]  # of the properties, which are made of it when somebody asks
+    memory_of_nearest: Optional[bytearray]  # the library's struct, which the properties read
 
     def _numbers(self, name, dtype, count):
         memory = self.memory_of_nearest
@@ -97,10 +97,10 @@ class TrianglePairs(NamedTuple):
 
 
 class NearPairs(NamedTuple):
-    """Pairs of triangles, or of their parts, that are no farther apart than a margin, sorted by distance."""
+    """Pairs of triangles, or of their parts, within a margin, sorted by distance."""
 
     pairs: np.ndarray  # NEAR_PAIR, fixed mesh coordinates
-    count: int  # all that were found, in the array or not
+    count: int  # all pairs found, in the array or not
     complete: bool  # False: a limit ended the search, or the bodies are too far apart for float
     truncated: bool  # True: the array was too short and holds the nearest pairs
     pad: float  # no pair is farther apart than the margin and this, mesh units
@@ -160,7 +160,7 @@ class FirstContact(NamedTuple):
     lower: float
     upper: float
     distance: Tuple[float, float]  # of the surfaces at `lower`
-    triangles: Optional[Tuple[int, int]]  # fixed and moving, that intersect at `upper`, where they are known
+    triangles: Optional[Tuple[int, int]]  # fixed and moving, that intersect at `upper`, if they are known
     grazed: bool
     narrowest: float
     distances: int  # asked for

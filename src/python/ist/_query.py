@@ -218,7 +218,7 @@ class Query(Lone):
             self._lock.release()
 
     def near_pairs(self, pose, margin, *, out=None, most=None, tests=0, seconds=0.0):
-        """All pairs of triangles that are no farther apart than a margin, mesh units, with their closest points.
+        """All pairs of triangles within a margin, mesh units, with their closest points.
 
         Pairs that intersect are among them. They are sorted by distance. p_fixed = pose @ p_moving. `out`, `most`: as
         leaf_pairs(). For a body that moves slowly, Query(near_pairs=2048) keeps pairs, and answers many times faster.
@@ -245,7 +245,7 @@ class Query(Lone):
             self._lock.release()
 
     def near_parts(self, pose, triangles, margin):
-        """The parts of two triangles, (fixed, moving) by index, that are no farther apart than a margin, mesh units.
+        """The parts of two triangles, (fixed, moving) by index, within a margin, mesh units.
 
         Each corner above the face of the other triangle, and of each two edges the closest points: 15 at most, sorted by
         distance. p_fixed = pose @ p_moving.
@@ -286,7 +286,7 @@ class Query(Lone):
             if most is not None or getattr(found, count) <= room:
                 return array
             room = getattr(found, count)
-            if end is not None:  # the time is that of the whole call
+            if end is not None:  # the limit holds for the whole call
                 budget.nanoseconds = max(1, end - time.monotonic_ns())
 
     def contacts(self, pose, *, out=None, tests=0, seconds=0.0):

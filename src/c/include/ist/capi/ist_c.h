@@ -21,7 +21,7 @@
  *
  * Structs that begin with `struct_size`: set it to sizeof and all other members to zero; a zero
  * member selects its default. A program compiled with an older header passes a shorter struct; the
- * missing members take their defaults. A longer struct is accepted where all members unknown to
+ * missing members take their defaults. A longer struct is accepted if all members unknown to
  * this library are zero. A size below 16, above 4096 or not a multiple of 8 gives IST_STRUCT_SIZE.
  *
  * Poses are double[16] in column-major order: [0..2], [4..6] and [8..10] are the images of the x, y
@@ -49,7 +49,7 @@ extern "C" {
 typedef struct ist_mesh ist_mesh;
 
 /** Creates a mesh from copies of 3 * vertex_count coordinates and 3 * triangle_count indices. The
- * vertices of a triangle run counter-clockwise, seen from outside. An array may be NULL where its
+ * vertices of a triangle run counter-clockwise, seen from outside. An array may be NULL if its
  * count is 0, but a mesh without triangles is an error.
  *
  * Errors: IST_MESH_EMPTY, IST_MESH_POINTS_ONLY; IST_MESH_NOT_FINITE and IST_MESH_BAD_INDEX, with
@@ -99,7 +99,7 @@ IST_C_API ist_status ist_mesh_get_info(const ist_mesh* mesh, const ist_progress*
 
 /** Copies the first `vertex_capacity` vertices, 3 coordinates each, and the first
  * `triangle_capacity` triangles, 3 indices each, in the order of the indices in answers. An array
- * may be NULL where its capacity is 0. Cost: 1 ns per number. */
+ * may be NULL if its capacity is 0. Cost: 1 ns per number. */
 IST_C_API ist_status ist_mesh_copy(const ist_mesh* mesh, double* vertices, size_t vertex_capacity,
                                    uint32_t* triangles, size_t triangle_capacity) IST_NOEXCEPT;
 
@@ -206,7 +206,7 @@ IST_C_API ist_status ist_tree_self_intersections(const ist_tree* tree,
                                                  uint64_t* pairs) IST_NOEXCEPT;
 
 /** Copies the centres of the first `capacity` leaves, 3 mesh coordinates each, in the order of the
- * indices in leaf pairs. A leaf is a cube of edge voxel_size. `centres` may be NULL where
+ * indices in leaf pairs. A leaf is a cube of edge voxel_size. `centres` may be NULL if
  * `capacity` is 0. Cost: 20 ns per leaf. */
 IST_C_API ist_status ist_tree_copy_leaf_centres(const ist_tree* tree, double* centres,
                                                 size_t capacity) IST_NOEXCEPT;
@@ -301,7 +301,7 @@ typedef struct ist_budget {
 } ist_budget;
 
 /** Finds all pairs of leaves with overlapping bounds, sorted by fixed and then by moving leaf.
- * `pairs` may be NULL where `capacity` is 0, to count; `budget` may be NULL: no limit. With a
+ * `pairs` may be NULL if `capacity` is 0, to count; `budget` may be NULL: no limit. With a
  * budget the distance is known. Errors: IST_POSE_INVALID. Cost: 1 to 3 ns per test. [real time] */
 IST_C_API ist_status ist_query_leaf_pairs(ist_query* query, const double pose[16],
                                           const ist_budget* budget, ist_leaf_pair* pairs,
@@ -457,8 +457,8 @@ typedef struct ist_near_pairs_result {
   double rotation_error; /**< of the given pose: the largest entry of |R^T R - I| */
 } ist_near_pairs_result;
 
-/** Finds all pairs of triangles that are no farther apart than `margin`, mesh units, with their
- * closest points, sorted by distance, then by fixed and by moving triangle. Triangles that
+/** Finds all pairs of triangles within `margin` of each other, mesh units, with their closest
+ * points, sorted by distance, then by fixed and by moving triangle. Triangles that
  * intersect are among them. `pairs` may be NULL if `capacity` is 0, to count; `budget` as for leaf
  * pairs. Bodies that are too far apart for float give a result that is not complete. Errors:
  * IST_POSE_INVALID; IST_TRIANGLES_MISSING; IST_ARGUMENT_INVALID for a margin that is negative,
