@@ -458,12 +458,11 @@ typedef struct ist_near_pairs_result {
 } ist_near_pairs_result;
 
 /** Finds all pairs of triangles within `margin` of each other, mesh units, with their closest
- * points, sorted by distance, then by fixed and by moving triangle. Triangles that
- * intersect are among them. `pairs` may be NULL if `capacity` is 0, to count; `budget` as for leaf
- * pairs. Bodies that are too far apart for float give a result that is not complete. Errors:
- * IST_POSE_INVALID; IST_TRIANGLES_MISSING; IST_ARGUMENT_INVALID for a margin that is negative,
- * infinite or NaN. Cost: 0.3 ms for jaws that touch and a margin of 0.06 mm, 0.3 us per near pair.
- * [real time] */
+ * points, sorted by distance, then by fixed and by moving triangle. Triangles that intersect are
+ * among them. `pairs` may be NULL if `capacity` is 0, to count; `budget` as for leaf pairs. Bodies
+ * that are too far apart for float give a result that is not complete. Errors: IST_POSE_INVALID;
+ * IST_TRIANGLES_MISSING; IST_ARGUMENT_INVALID for a margin that is negative, infinite or NaN. Cost:
+ * 0.3 ms for jaws that touch and a margin of 0.06 mm, 0.3 us per near pair. [real time] */
 IST_C_API ist_status ist_query_near_pairs(ist_query* query, const double pose[16], double margin,
                                           const ist_budget* budget, ist_near_pair* pairs,
                                           size_t capacity,
@@ -472,11 +471,11 @@ IST_C_API ist_status ist_query_near_pairs(ist_query* query, const double pose[16
 /** The most pairs of parts that two triangles have. */
 #define IST_MOST_NEAR_PARTS 15
 
-/** Lists the parts of two triangles, by index, that are no farther apart than `margin`, sorted by
- * distance: each corner above the face of the other triangle, and of each two edges the points that
- * are closest. `parts` may be NULL if `capacity` is 0; IST_MOST_NEAR_PARTS is always enough.
- * Errors: as ist_query_near_pairs; IST_ARGUMENT_INVALID for an index out of range. Cost: 0.5 us.
- * [real time] */
+/** Lists the parts of two triangles, by index, within `margin` of each other, sorted by distance:
+ * each corner above the face of the other triangle, and the closest points of each two edges.
+ * `parts` may be NULL if `capacity` is 0; IST_MOST_NEAR_PARTS is always enough. Errors: as
+ * ist_query_near_pairs; IST_ARGUMENT_INVALID for an index out of range. Cost: 0.5 us. [real time]
+ */
 IST_C_API ist_status ist_query_near_parts(ist_query* query, const double pose[16], uint32_t fixed,
                                           uint32_t moving, double margin, ist_near_pair* parts,
                                           size_t capacity,
