@@ -15,10 +15,6 @@ ordered_json or_null(const std::optional<Number>& number) {
   return number ? ordered_json(*number) : ordered_json(nullptr);
 }
 
-ordered_json triple(const std::optional<Eigen::Vector3d>& point) {
-  return point ? ordered_json{(*point)[0], (*point)[1], (*point)[2]} : ordered_json(nullptr);
-}
-
 }  // namespace
 
 ordered_json answer_line(std::size_t index, const PoseAnswer& answer, const Engine& engine,
@@ -55,6 +51,12 @@ ordered_json answer_line(std::size_t index, const PoseAnswer& answer, const Engi
   line["distance_lower"] = lower(found.distance);
   line["distance_upper"] = upper(found.distance);
   line["distance_narrowest"] = or_null(found.narrowest);
+  const auto of_nearest = [&found](const auto& member) {
+    return found.nearest ? std::optional((*found.nearest).*member) : std::nullopt;
+  };
+  line["nearest_fixed"] = point_json(of_nearest(&NearPair::fixed_point));
+  line["nearest_moving"] = point_json(of_nearest(&NearPair::moving_point));
+  line["nearest_triangles"] = pair_json(of_nearest(&NearPair::triangles));
   line["depth_lower"] = lower(found.depth.certain);
   line["depth_upper"] = upper(found.depth.certain);
   const bool certain = found.depth.certain.has_value();
@@ -62,7 +64,7 @@ ordered_json answer_line(std::size_t index, const PoseAnswer& answer, const Engi
   line["depth_capped"] = certain ? ordered_json(found.depth.capped) : ordered_json(nullptr);
   line["self_intersecting"] = or_null(found.self_intersecting);
   line["depth_at_vertices"] = or_null(found.depth.at_vertices);
-  line["depth_point"] = triple(found.depth.point);
+  line["depth_point"] = point_json(found.depth.point);
   line["contacts"] = or_null(found.contacts);
   line["contact_depth"] = or_null(found.contact_depth);
   line["area"] = or_null(found.depth.area);

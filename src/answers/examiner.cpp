@@ -103,6 +103,7 @@ void Examiner::find_distance(const Eigen::Isometry3d& pose, Findings& found) {
   const DistanceResult result = query_.distance(pose, distance_tolerance_, budget_);
   found.distance = result.distance;
   found.narrowest = result.narrowest;
+  found.nearest = result.nearest;
   found.rotation_error = result.rotation_error;
   if (result.complete || !questions_.distance) return;
   const double width = result.distance.upper - result.distance.lower;

@@ -36,6 +36,7 @@ struct Findings {
   std::optional<std::uint64_t> triangle_pairs{};
   std::optional<DistanceInterval> distance{};
   std::optional<double> narrowest{};  ///< the width below which the distance cannot be told
+  std::optional<NearPair> nearest{};  ///< triangles whose distance lies in the interval
   Depth depth;
   /// Whether a surface intersects itself. Inside is by winding numbers then.
   std::optional<bool> self_intersecting{};

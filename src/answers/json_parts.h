@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "answers/bodies.h"
+#include "ist/query/results.h"
 #include "ist/tree/sphere_tree.h"
 
 /// The parts that the JSON of all answers shares. docs/command.md lists its keys.
@@ -32,6 +33,12 @@ namespace ist::answers {
 
 /// Returns the 16 numbers of a pose, column by column.
 [[nodiscard]] nlohmann::ordered_json pose_json(const Eigen::Isometry3d& pose);
+
+/// Returns the three numbers of a point or a vector, or null.
+[[nodiscard]] nlohmann::ordered_json point_json(const std::optional<Eigen::Vector3d>& point);
+
+/// Returns the indices of two triangles, or null.
+[[nodiscard]] nlohmann::ordered_json pair_json(const std::optional<TrianglePair>& pair);
 
 /// The files that an answer is about, by their roles: `fixed`, `mesh`, `tree` and so on.
 using NamedSources = std::vector<std::pair<std::string, MeshSource>>;

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <span>
 
 #include "c/objects.h"
@@ -21,6 +23,10 @@ static_assert(sizeof(ist_triangle_pair) == sizeof(TrianglePair) &&
 static_assert(static_cast<int>(Found::kFresh) == IST_FOUND_FRESH &&
               static_cast<int>(Found::kKept) == IST_FOUND_KEPT &&
               static_cast<int>(Found::kClear) == IST_FOUND_CLEAR);
+static_assert(static_cast<int>(TrianglePart::kCorner0) == IST_PART_CORNER0 &&
+              static_cast<int>(TrianglePart::kEdge0) == IST_PART_EDGE0 &&
+              static_cast<int>(TrianglePart::kFace) == IST_PART_FACE);
+static_assert(Query::kMostNearParts == IST_MOST_NEAR_PARTS);
 static_assert(answer_of(Answer::kUnknown) == IST_ANSWER_UNKNOWN && IST_ANSWER_UNKNOWN == 0 &&
               answer_of(Answer::kNo) == IST_ANSWER_NO &&
               answer_of(Answer::kNear) == IST_ANSWER_NEAR &&
@@ -42,6 +48,66 @@ ist_query_result result_of(const QueryResult& found) {
   result.found = static_cast<std::int32_t>(found.found);
   result.rotation_error = found.rotation_error;
   return result;
+}
+
+ist_distance_result result_of(const DistanceResult& found) {
+  ist_distance_result result{};
+  result.lower = found.distance.lower;
+  result.upper = found.distance.upper;
+  result.sphere_tests = found.sphere_tests;
+  result.complete = found.complete;
+  result.narrowest = found.narrowest;
+  result.rotation_error = found.rotation_error;
+  if (!found.nearest) return result;
+  result.nearest_known = 1;
+  copy(found.nearest->fixed_point, result.nearest_fixed);
+  copy(found.nearest->moving_point, result.nearest_moving);
+  copy(found.nearest->direction(), result.direction);
+  result.nearest_triangles[0] = found.nearest->triangles.fixed;
+  result.nearest_triangles[1] = found.nearest->triangles.moving;
+  return result;
+}
+
+ist_near_pair near_pair_of(const NearPair& pair) {
+  ist_near_pair out;
+  out.fixed = pair.triangles.fixed;
+  out.moving = pair.triangles.moving;
+  out.distance = pair.distance;
+  copy(pair.fixed_point, out.fixed_point);
+  copy(pair.moving_point, out.moving_point);
+  copy(pair.direction(), out.direction);
+  out.fixed_part = static_cast<std::int32_t>(pair.fixed_part);
+  out.moving_part = static_cast<std::int32_t>(pair.moving_part);
+  return out;
+}
+
+// The library's pairs stand in the caller's array, so that none need other memory. The last pair is
+// converted first: no element of the array then reaches a pair before its own.
+static_assert(sizeof(NearPair) <= sizeof(ist_near_pair) &&
+              alignof(NearPair) <= alignof(ist_near_pair));
+std::span<NearPair> memory_in(ist_near_pair* pairs, std::size_t capacity) {
+  return {reinterpret_cast<NearPair*>(pairs), capacity};
+}
+void convert(std::span<const NearPair> found, ist_near_pair* pairs) {
+  for (std::size_t k = found.size(); k-- > 0;) pairs[k] = near_pair_of(NearPair(found[k]));
+}
+
+ist_near_pairs_result result_of(const NearPairsResult& found, std::size_t capacity) {
+  ist_near_pairs_result result{};
+  result.pairs = found.near_pairs;
+  result.written = std::min<std::uint64_t>(found.near_pairs, capacity);
+  result.sphere_tests = found.sphere_tests;
+  result.truncated = found.near_pairs > capacity;
+  result.complete = found.complete;
+  result.found = static_cast<std::int32_t>(found.found);
+  result.pad = found.pad;
+  result.rotation_error = found.rotation_error;
+  return result;
+}
+
+void check_margin(Call& call, double margin) {
+  if (margin >= 0 && std::isfinite(margin)) return;
+  call.fail(IST_ARGUMENT_INVALID, "margin is {}: pass a finite number of at least 0", margin);
 }
 
 }  // namespace
@@ -128,9 +194,7 @@ ist_status ist_query_distance(ist_query* query, const double pose[16], double to
     if (!held) return;
     const ist::DistanceResult found = held->query.distance(to_isometry(pose), tolerance, allowed);
     if (!answered(call, found.status, pose)) return;
-    write_sized({0, found.distance.lower, found.distance.upper, found.sphere_tests, found.complete,
-                 0, found.narrowest, found.rotation_error},
-                *result);
+    write_sized(result_of(found), *result);
   });
 }
 
@@ -177,6 +241,53 @@ ist_status ist_query_triangle_pairs(ist_query* query, const double pose[16],
     values.truncated = found.truncated;
     values.complete = found.complete;
     values.rotation_error = found.rotation_error;
+    write_sized(values, *result);
+  });
+}
+
+ist_status ist_query_near_pairs(ist_query* query, const double pose[16], double margin,
+                                const ist_budget* budget, ist_near_pair* pairs, size_t capacity,
+                                ist_near_pairs_result* result) IST_NOEXCEPT {
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "result", result);
+    call.need("pose", pose);
+    call.need_array("pairs", pairs, capacity);
+    check_margin(call, margin);
+    const ist::Budget allowed = read_budget(call, budget);
+    const Held<QueryObject> held(call, "query", query);
+    if (!held) return;
+    const std::span<ist::NearPair> memory = memory_in(pairs, capacity);
+    const ist::NearPairsResult found =
+        held->query.near_pairs(to_isometry(pose), margin, memory, allowed);
+    if (!answered(call, found.status, pose)) return;
+    const ist_near_pairs_result values = result_of(found, capacity);
+    convert(memory.first(static_cast<std::size_t>(values.written)), pairs);
+    write_sized(values, *result);
+  });
+}
+
+ist_status ist_query_near_parts(ist_query* query, const double pose[16], uint32_t fixed,
+                                uint32_t moving, double margin, ist_near_pair* parts,
+                                size_t capacity, ist_near_pairs_result* result) IST_NOEXCEPT {
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "result", result);
+    call.need("pose", pose);
+    call.need_array("parts", parts, capacity);
+    check_margin(call, margin);
+    const Held<QueryObject> held(call, "query", query);
+    if (!held) return;
+    std::array<ist::NearPair, IST_MOST_NEAR_PARTS> all;
+    const ist::NearPairsResult found =
+        held->query.near_parts(to_isometry(pose), {fixed, moving}, margin, all);
+    if (found.status == ist::QueryStatus::kNoSuchTriangle) {
+      call.fail(IST_ARGUMENT_INVALID,
+                "fixed is {} and moving is {}: the meshes have {} and {} triangles", fixed, moving,
+                held->query.fixed().triangles()->triangles.size(),
+                held->query.moving().triangles()->triangles.size());
+    }
+    if (!answered(call, found.status, pose)) return;
+    const ist_near_pairs_result values = result_of(found, capacity);
+    convert({all.data(), static_cast<std::size_t>(values.written)}, parts);
     write_sized(values, *result);
   });
 }

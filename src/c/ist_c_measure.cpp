@@ -71,6 +71,14 @@ ist_first_contact first_contact_of(const FirstContact& found) {
   out.distances = found.distances;
   out.self_intersecting = self_intersecting_code(found);
   out.rotation_error = found.rotation_error;
+  out.place_known = found.place.has_value();
+  if (found.place) {
+    copy(found.place->fixed_point, out.place_fixed);
+    copy(found.place->moving_point, out.place_moving);
+    copy(found.normal, out.normal);
+    out.place_triangles[0] = found.place->triangles.fixed;
+    out.place_triangles[1] = found.place->triangles.moving;
+  }
   return out;
 }
 static_assert(static_cast<int>(FirstContact::Status::kContact) + IST_FIRST_CONTACT ==

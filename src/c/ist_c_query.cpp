@@ -23,10 +23,11 @@ void check_query_options(Call& call, const ist_query_options& known) {
               "options->period_ns is {}: pass a number above 0, 0 for 1 ms, or -1 for no pause",
               known.period_ns);
   }
-  if (std::max(known.frontier_pairs, known.front_pairs) > kMostPairs) {
+  if (std::max({known.frontier_pairs, known.front_pairs, known.near_pairs}) > kMostPairs) {
     call.fail(IST_ARGUMENT_INVALID,
-              "options->frontier_pairs is {} and front_pairs is {}: pass at most {}",
-              known.frontier_pairs, known.front_pairs, kMostPairs);
+              "options->frontier_pairs is {}, front_pairs is {} and near_pairs is {}: pass at most "
+              "{}",
+              known.frontier_pairs, known.front_pairs, known.near_pairs, kMostPairs);
   }
   if (known.contacts < -1 || known.contacts > kMostContacts) {
     call.fail(IST_ARGUMENT_INVALID,
@@ -64,6 +65,7 @@ CQueryOptions read_query_options(Call& call, const ist_query_options* given) {
   if (known.target != nullptr) query.target = known.target;
   if (known.frontier_pairs > 0) query.frontier_pairs = known.frontier_pairs;
   query.front_pairs = known.front_pairs;
+  query.near_pairs = known.near_pairs;
   if (known.workers > 0) query.workers = known.workers;
   if (known.period_ns != 0) {
     query.period = std::chrono::nanoseconds(std::max(known.period_ns, std::int64_t{0}));

@@ -97,6 +97,8 @@ bool answered(Call& call, QueryStatus status, const double* pose) {
     case QueryStatus::kBusy:              // a handle is used by one thread at a time
     case QueryStatus::kNotPrepared:       // of a world
     case QueryStatus::kNoSuchBody:        // of a world
+    case QueryStatus::kMarginInvalid:     // the margin was checked before
+    case QueryStatus::kNoSuchTriangle:    // of ist_query_near_parts, which reports it
       break;
   }
   call.fail(IST_INTERNAL_ERROR, "a query returned an unknown status: report this bug");

@@ -35,6 +35,10 @@ std::string words_of(const DistanceInterval& interval) {
   return fmt::format("{:.6g} to {:.6g}", interval.lower, interval.upper);
 }
 
+std::string words_of(const Eigen::Vector3d& point) {
+  return fmt::format("({:.5g}, {:.5g}, {:.5g})", point[0], point[1], point[2]);
+}
+
 std::string depth_of(const Findings& found) {
   const Depth& depth = found.depth;
   if (depth.certain) return words_of(*depth.certain);
@@ -85,11 +89,12 @@ void print_one(const PoseAnswer& answer, const Bodies& bodies) {
   };
   line("touch", word_of(found.touch, 0));
   line("distance", found.distance ? words_of(*found.distance) : "-");
-  std::string depth = depth_of(found);
-  if (found.depth.point) {
-    const Eigen::Vector3d& p = *found.depth.point;
-    depth += fmt::format(" at ({:.5g}, {:.5g}, {:.5g})", p[0], p[1], p[2]);
+  if (found.nearest && found.nearest->distance > 0) {
+    line("nearest", fmt::format("{} and {}", words_of(found.nearest->fixed_point),
+                                words_of(found.nearest->moving_point)));
   }
+  std::string depth = depth_of(found);
+  if (found.depth.point) depth += " at " + words_of(*found.depth.point);
   line("depth", depth);
   line("area", words_of(found.depth.area));
   if (found.triangle_pairs)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -85,6 +86,25 @@ void expect_same(const ist_contact_sums& c, const ContactSums& sums) {
   EXPECT_EQ(Eigen::Vector3d(c.spring_force), sums.spring.force);
   EXPECT_EQ(Eigen::Vector3d(c.spring_torque), sums.spring.torque);
   EXPECT_EQ(Eigen::Vector3d(c.about), sums.about);
+}
+
+void expect_same(const ist_near_pair& c, const NearPair& pair) {
+  EXPECT_EQ((TrianglePair{c.fixed, c.moving}), pair.triangles);
+  EXPECT_EQ(c.distance, pair.distance);
+  EXPECT_EQ(Eigen::Vector3d(c.fixed_point), pair.fixed_point);
+  EXPECT_EQ(Eigen::Vector3d(c.moving_point), pair.moving_point);
+  EXPECT_EQ(Eigen::Vector3d(c.direction), pair.direction());
+  EXPECT_EQ(c.fixed_part, static_cast<std::int32_t>(pair.fixed_part));
+  EXPECT_EQ(c.moving_part, static_cast<std::int32_t>(pair.moving_part));
+}
+
+void expect_same(const ist_near_pairs_result& c, const NearPairsResult& result) {
+  EXPECT_EQ(c.pairs, result.near_pairs);
+  EXPECT_EQ(c.sphere_tests, result.sphere_tests);
+  EXPECT_EQ(c.complete, result.complete ? 1 : 0);
+  EXPECT_EQ(c.found, static_cast<std::int32_t>(result.found));
+  EXPECT_EQ(c.pad, result.pad);
+  EXPECT_EQ(c.rotation_error, result.rotation_error);
 }
 
 TEST_F(CAnswers, AreTheSameLeafPairs) {
@@ -346,6 +366,13 @@ TEST_F(CAnswers, AreTheSameCertainOnes) {
     EXPECT_EQ(distance.complete, wanted.complete ? 1 : 0);
     EXPECT_EQ(distance.narrowest, wanted.narrowest);
     EXPECT_EQ(distance.rotation_error, wanted.rotation_error);
+    ASSERT_TRUE(wanted.nearest.has_value());
+    EXPECT_EQ(distance.nearest_known, 1);
+    EXPECT_EQ(distance.nearest_triangles[0], wanted.nearest->triangles.fixed);
+    EXPECT_EQ(distance.nearest_triangles[1], wanted.nearest->triangles.moving);
+    EXPECT_EQ(Eigen::Vector3d(distance.nearest_fixed), wanted.nearest->fixed_point);
+    EXPECT_EQ(Eigen::Vector3d(distance.nearest_moving), wanted.nearest->moving_point);
+    EXPECT_EQ(Eigen::Vector3d(distance.direction), wanted.nearest->direction());
     ASSERT_EQ(name(ist_query_distance(c_query_, pose.data(), 9, nullptr, &distance)), "ok");
     EXPECT_EQ(distance.complete, 1);
 
@@ -384,6 +411,60 @@ TEST_F(CAnswers, AreTheSameCertainOnes) {
   }
   EXPECT_TRUE(cut);
   EXPECT_GT(met, 100u);
+}
+
+// Arrays with room for all pairs, for some of them and for none.
+TEST_F(CAnswers, NearPairsAreThoseOfCpp) {
+  constexpr double kMargin = 0.05;
+  std::vector<NearPair> pairs(1 << 13);
+  std::vector<ist_near_pair> c_pairs(1 << 13);
+  std::uint64_t near = 0, cut = 0;
+  for (const Eigen::Isometry3d& pose : poses()) {
+    for (const std::size_t room : {pairs.size(), std::size_t{7}, std::size_t{0}}) {
+      for (const std::uint64_t tests : {std::uint64_t{0}, std::uint64_t{700}}) {
+        const ist_budget budget{sizeof budget, tests, 0};
+        auto c = sized<ist_near_pairs_result>();
+        ASSERT_EQ(name(ist_query_near_pairs(c_query_, pose.data(), kMargin, &budget,
+                                            room > 0 ? c_pairs.data() : nullptr, room, &c)),
+                  "ok");
+        const NearPairsResult wanted =
+            tests == 0
+                ? query_.near_pairs(pose, kMargin, std::span(pairs).first(room))
+                : query_.near_pairs(pose, kMargin, std::span(pairs).first(room), {.tests = tests});
+        expect_same(c, wanted);
+        EXPECT_EQ(c.truncated, wanted.truncated ? 1 : 0);
+        ASSERT_EQ(c.written, std::min<std::uint64_t>(wanted.near_pairs, room));
+        for (std::size_t i = 0; i < c.written; ++i) expect_same(c_pairs[i], pairs[i]);
+        near += c.written;
+        cut += 1 - static_cast<std::uint64_t>(c.complete);
+      }
+    }
+  }
+  EXPECT_GT(near, 500u);
+  EXPECT_GT(cut, 0u);
+}
+
+TEST_F(CAnswers, NearPartsAreThoseOfCpp) {
+  std::array<NearPair, Query::kMostNearParts> parts;
+  std::array<ist_near_pair, IST_MOST_NEAR_PARTS> c_parts;
+  std::uint64_t most = 0;
+  for (const Eigen::Isometry3d& pose : poses()) {
+    for (std::uint32_t k = 0; k < 20; ++k) {
+      const NearPairsResult wanted = query_.near_parts(pose, {k, 3 * k}, 3, parts);
+      for (const std::size_t room : {c_parts.size(), std::size_t{2}, std::size_t{0}}) {
+        auto c = sized<ist_near_pairs_result>();
+        ASSERT_EQ(name(ist_query_near_parts(c_query_, pose.data(), k, 3 * k, 3,
+                                            room > 0 ? c_parts.data() : nullptr, room, &c)),
+                  "ok");
+        expect_same(c, wanted);
+        ASSERT_EQ(c.written, std::min<std::uint64_t>(wanted.near_pairs, room));
+        EXPECT_EQ(c.truncated, c.written < c.pairs ? 1 : 0);
+        for (std::size_t i = 0; i < c.written; ++i) expect_same(c_parts[i], parts[i]);
+        most = std::max(most, c.pairs);
+      }
+    }
+  }
+  EXPECT_GE(most, 8u);
 }
 
 TEST(CTrees, TellTheUnitOfTheirFile) {

@@ -54,9 +54,11 @@ class CMisuse : public ::testing::Test {
   ist_contact_sums sums_ = sized<ist_contact_sums>();
   ist_distance_result distance_ = sized<ist_distance_result>();
   ist_triangle_pairs_result triangle_result_ = sized<ist_triangle_pairs_result>();
+  ist_near_pairs_result near_result_ = sized<ist_near_pairs_result>();
   ist_leaf_pair leaf_pairs_[4] = {};
   ist_contact contacts_[4] = {};
   ist_triangle_pair triangle_pairs_[4] = {};
+  ist_near_pair near_pairs_[4] = {};
   std::int32_t answer_ = 0;
   double force_[3] = {}, torque_[3] = {};
   ist_mesh* no_mesh_ = nullptr;
@@ -111,6 +113,14 @@ TEST_F(CMisuse, OfAPoseIsToldAndNothingIsAnswered) {
                                             &triangle_result_)),
               "pose-invalid");
     EXPECT_EQ(triangle_result_.pairs, 0u);
+    near_result_.pairs = 7;
+    EXPECT_EQ(name(ist_query_near_pairs(query_, pose, 0.1, nullptr, near_pairs_, 4, &near_result_)),
+              "pose-invalid");
+    EXPECT_EQ(near_result_.pairs, 0u);
+    near_result_.pairs = 7;
+    EXPECT_EQ(name(ist_query_near_parts(query_, pose, 0, 0, 9, near_pairs_, 4, &near_result_)),
+              "pose-invalid");
+    EXPECT_EQ(near_result_.pairs, 0u);
     force_[1] = torque_[2] = 7;
     EXPECT_EQ(name(ist_servo_on_tick(servo_, pose, force_, torque_)), "pose-invalid");
     EXPECT_EQ(force_[1] + torque_[2], 0);
@@ -242,6 +252,7 @@ TEST_F(CMisuse, OfOptionsIsTold) {
   EXPECT_EQ(queried([](auto& o) { o.workers = -1; }), "argument-invalid");
   EXPECT_EQ(queried([](auto& o) { o.period_ns = -2; }), "argument-invalid");
   EXPECT_EQ(queried([](auto& o) { o.frontier_pairs = UINT64_MAX; }), "argument-invalid");
+  EXPECT_EQ(queried([](auto& o) { o.near_pairs = (1 << 26) + 1; }), "argument-invalid");
   EXPECT_EQ(queried([](auto& o) { o.contacts = 4097; }), "argument-invalid");
   EXPECT_EQ(queried([](auto& o) { o.contacts = -2; }), "argument-invalid");
   for (const double bad : {2.001, -0.5, -1.0, -2.0, HUGE_VAL, -HUGE_VAL, double{NAN}}) {
@@ -282,6 +293,47 @@ TEST_F(CMisuse, OfOptionsIsTold) {
   EXPECT_EQ(name(ist_query_distance(query_, pose_.data(), -1, nullptr, &distance_)),
             "argument-invalid");
   EXPECT_TRUE(!no_tree_ && !no_query_ && !no_servo_);
+}
+
+TEST_F(CMisuse, OfNearPairsIsToldAndNothingIsAnswered) {
+  const auto pairs = [&](double margin, ist_near_pair* out, std::size_t room) {
+    near_result_.pairs = near_result_.written = 7;
+    const std::string status =
+        name(ist_query_near_pairs(query_, pose_.data(), margin, nullptr, out, room, &near_result_));
+    if (status != "ok") {
+      EXPECT_EQ(near_result_.pairs + near_result_.written, 0u);
+    }
+    return status;
+  };
+  const auto parts = [&](std::uint32_t fixed, std::uint32_t moving, double margin,
+                         ist_near_pair* out, std::size_t room) {
+    near_result_.pairs = near_result_.written = 7;
+    const std::string status = name(ist_query_near_parts(query_, pose_.data(), fixed, moving,
+                                                         margin, out, room, &near_result_));
+    if (status != "ok") {
+      EXPECT_EQ(near_result_.pairs + near_result_.written, 0u);
+    }
+    return status;
+  };
+  for (const double bad : {double{NAN}, HUGE_VAL, -HUGE_VAL, -1e-300}) {
+    EXPECT_EQ(pairs(bad, near_pairs_, 4), "argument-invalid") << bad;
+    EXPECT_EQ(parts(0, 0, bad, near_pairs_, 4), "argument-invalid") << bad;
+  }
+  EXPECT_STREQ(ist_last_error_message(),
+               "ist_query_near_parts: margin is -1e-300: pass a finite number of at least 0");
+  EXPECT_EQ(pairs(0.1, nullptr, 4), "null-argument");
+  EXPECT_EQ(parts(0, 0, 9, nullptr, 4), "null-argument");
+  EXPECT_EQ(pairs(0.1, near_pairs_, SIZE_MAX), "argument-invalid");
+  EXPECT_EQ(parts(12, 0, 9, near_pairs_, 4), "argument-invalid");
+  EXPECT_EQ(parts(0, UINT32_MAX, 9, near_pairs_, 4), "argument-invalid");
+  EXPECT_STREQ(ist_last_error_message(),
+               "ist_query_near_parts: fixed is 0 and moving is 4294967295: the meshes have 12 and "
+               "12 triangles");
+  EXPECT_EQ(parts(11, 11, 9, near_pairs_, 4), "ok");
+  near_result_.struct_size = 8;
+  EXPECT_EQ(
+      name(ist_query_near_pairs(query_, pose_.data(), 0.1, nullptr, near_pairs_, 4, &near_result_)),
+      "struct-size");
 }
 
 // Missing and invalid files; the message names the file.

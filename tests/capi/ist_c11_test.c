@@ -159,6 +159,19 @@ static void certify(ist_query* query) {
   CHECK(distance.lower <= 2 && distance.upper >= 2 && distance.complete == 1);
   IS(ist_query_distance(query, in.at, 0, NULL, &distance), IST_OK);
   CHECK(distance.lower == 0 && distance.upper == 0 && distance.complete == 1);
+  CHECK(distance.nearest_known == 1 && distance.direction[0] == 0);
+
+  ist_near_pair* near = malloc(IST_MOST_NEAR_PARTS * sizeof *near);
+  ist_near_pairs_result listed = {.struct_size = sizeof listed};
+  IS(ist_query_near_pairs(query, out.at, 2.01, NULL, near, 1, &listed), IST_OK);
+  CHECK(listed.pairs > 0 && listed.written == 1 && listed.complete == 1 && listed.pad < 0.01);
+  CHECK(fabs(near->distance - 2) < 0.01 && fabs(near->direction[0] - 1) < 1e-6);
+  const uint32_t fixed = near->fixed, moving = near->moving;
+  IS(ist_query_near_parts(query, out.at, fixed, moving, 2.01, near, IST_MOST_NEAR_PARTS, &listed),
+     IST_OK);
+  CHECK(listed.written > 0 && listed.truncated == 0 && fabs(near->distance - 2) < 0.01);
+  IS(ist_query_near_parts(query, out.at, UINT32_MAX, 0, 1, NULL, 0, &listed), IST_ARGUMENT_INVALID);
+  free(near);
 
   ist_triangle_pair* pairs = malloc(200 * sizeof *pairs);
   ist_triangle_pairs_result result = {.struct_size = sizeof result};

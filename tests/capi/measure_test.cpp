@@ -180,6 +180,19 @@ TEST_F(CMeasure, FirstContactIsThatOfCpp) {
   EXPECT_EQ(result.upper, wanted.upper);
   EXPECT_EQ(result.triangles_known, 1);
   EXPECT_EQ(result.moving, wanted.triangles->moving);
+  ASSERT_TRUE(wanted.place.has_value());
+  EXPECT_EQ(result.place_known, 1);
+  EXPECT_EQ(result.place_triangles[0], wanted.place->triangles.fixed);
+  EXPECT_EQ(result.place_triangles[1], wanted.place->triangles.moving);
+  EXPECT_EQ(Eigen::Vector3d(result.place_fixed), wanted.place->fixed_point);
+  EXPECT_EQ(Eigen::Vector3d(result.place_moving), wanted.place->moving_point);
+  EXPECT_EQ(Eigen::Vector3d(result.normal), wanted.normal);
+  // Away from the other body.
+  const auto away = down_by(0, 0, 30);
+  motion.to = away.data();
+  ASSERT_EQ(name(ist_query_first_contact(query_, &motion, 1e-4, nullptr, nullptr, &result)), "ok");
+  EXPECT_EQ(result.place_known, 0);
+  EXPECT_EQ(Eigen::Vector3d(result.normal), Eigen::Vector3d(0, 0, 0));
   // A screw, and one that is stopped.
   motion.to = nullptr;
   EXPECT_EQ(name(ist_query_first_contact(query_, &motion, 1e-4, nullptr, nullptr, &result)),

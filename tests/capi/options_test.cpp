@@ -36,11 +36,16 @@ TEST(CAnswer, MayStayOpenWithoutTriangles) {
       name(ist_query_triangle_pairs(query, c_shift(1.8, 0, 0).data(), nullptr, nullptr, 0, &c)),
       "triangles-missing");
   EXPECT_EQ(c.pairs, 0u);
+  auto near = sized<ist_near_pairs_result>();
+  EXPECT_EQ(
+      name(ist_query_near_pairs(query, c_shift(1.8, 0, 0).data(), 1, nullptr, nullptr, 0, &near)),
+      "triangles-missing");
 
   auto distance = sized<ist_distance_result>();
   ASSERT_EQ(name(ist_query_distance(query, c_shift(2.5, 0, 0).data(), 1e-6, nullptr, &distance)),
             "ok");
   EXPECT_EQ(distance.complete, 0);
+  EXPECT_EQ(distance.nearest_known, 0);
   EXPECT_GT(distance.upper - distance.lower, 1e-6);
   ASSERT_EQ(name(ist_query_distance(query, c_shift(2.5, 0, 0).data(), 10, nullptr, &distance)),
             "ok");
@@ -87,6 +92,37 @@ TEST(CAnswer, FollowsTheOptions) {
   ASSERT_EQ(name(ist_query_get_info(query, &info)), "ok");
   EXPECT_EQ(info.contacts, 0u);
   EXPECT_EQ(name(ist_query_free(query)), "ok");
+  EXPECT_EQ(name(ist_tree_free(tree)), "ok");
+}
+
+// A query that keeps near pairs answers from them, with the same bits.
+TEST(CAnswer, KeepsNearPairs) {
+  ist_tree* tree = c_tree(icosphere(2, 1), 0.2);
+  auto options = sized<ist_query_options>();
+  ist_query *fresh = nullptr, *keeps = nullptr;
+  ASSERT_EQ(name(ist_query_create(tree, tree, &options, &fresh)), "ok");
+  options.near_pairs = 2048;
+  ASSERT_EQ(name(ist_query_create(tree, tree, &options, &keeps)), "ok");
+  std::vector<ist_near_pair> wanted(2048), found(2048);
+  int kept = 0;
+  for (int tick = 0; tick < 60; ++tick) {
+    const auto pose = c_shift(2.01 - 1e-5 * tick, 2e-5 * tick, 0);
+    auto a = sized<ist_near_pairs_result>(), b = sized<ist_near_pairs_result>();
+    ASSERT_EQ(name(ist_query_near_pairs(fresh, pose.data(), 0.05, nullptr, wanted.data(),
+                                        wanted.size(), &a)),
+              "ok");
+    ASSERT_EQ(name(ist_query_near_pairs(keeps, pose.data(), 0.05, nullptr, found.data(),
+                                        found.size(), &b)),
+              "ok");
+    EXPECT_EQ(a.found, IST_FOUND_FRESH);
+    kept += b.found == IST_FOUND_KEPT;
+    ASSERT_GT(a.written, 0u);
+    ASSERT_EQ(a.written, b.written);
+    EXPECT_EQ(std::memcmp(wanted.data(), found.data(), a.written * sizeof(ist_near_pair)), 0);
+  }
+  EXPECT_GT(kept, 20);
+  EXPECT_EQ(name(ist_query_free(fresh)), "ok");
+  EXPECT_EQ(name(ist_query_free(keeps)), "ok");
   EXPECT_EQ(name(ist_tree_free(tree)), "ok");
 }
 

@@ -26,6 +26,7 @@ struct Bodies {
   std::vector<ist_leaf_pair> leaf_pairs = std::vector<ist_leaf_pair>(1 << 12);
   std::vector<ist_contact> contacts = std::vector<ist_contact>(32);
   std::vector<ist_triangle_pair> triangle_pairs = std::vector<ist_triangle_pair>(1 << 12);
+  std::vector<ist_near_pair> near_pairs = std::vector<ist_near_pair>(1 << 12);
 
   Bodies() {
     auto options = sized<ist_servo_options>();
@@ -52,7 +53,7 @@ struct Bodies {
 // Counts of the calls with the expected status and of the others, and of their answers.
 struct Asked {
   int as_expected = 0, otherwise = 0;
-  std::uint64_t leaf_pairs = 0, contacts = 0, triangle_pairs = 0;
+  std::uint64_t leaf_pairs = 0, contacts = 0, triangle_pairs = 0, near_pairs = 0;
   double force = 0;
 
   void status(ist_status is, ist_status wanted) noexcept {
@@ -60,7 +61,7 @@ struct Asked {
   }
   [[nodiscard]] bool all() const noexcept {
     return otherwise == 0 && as_expected > 1000 && leaf_pairs > 100 && contacts > 100 &&
-           triangle_pairs > 100 && force > 0.1;
+           triangle_pairs > 100 && near_pairs > 100 && force > 0.1;
   }
 };
 
@@ -105,6 +106,7 @@ Asked ask_all(Bodies& bodies) noexcept {
   auto sums = sized<ist_contact_sums>();
   auto distance = sized<ist_distance_result>();
   auto triangle_result = sized<ist_triangle_pairs_result>();
+  auto near_result = sized<ist_near_pairs_result>();
   auto query_info = sized<ist_query_info>();
   auto servo_info = sized<ist_servo_info>();
   auto budget = sized<ist_budget>();
@@ -139,6 +141,19 @@ Asked ask_all(Bodies& bodies) noexcept {
                                          bodies.triangle_pairs.size(), &triangle_result),
                 wanted);
     seen.triangle_pairs += triangle_result.written;
+    seen.status(ist_query_near_pairs(bodies.query, at, 0.02, nullptr, bodies.near_pairs.data(),
+                                     bodies.near_pairs.size(), &near_result),
+                wanted);
+    seen.near_pairs += near_result.written;
+    seen.status(ist_query_near_pairs(bodies.query, at, 0.02, &budget, nullptr, 0, &near_result),
+                wanted);
+    seen.status(ist_query_near_pairs(bodies.query, at, NAN, nullptr, nullptr, 0, &near_result),
+                IST_ARGUMENT_INVALID);
+    seen.status(
+        ist_query_near_parts(bodies.query, at, 0, 1, 9, bodies.near_pairs.data(), 15, &near_result),
+        wanted);
+    seen.status(ist_query_near_parts(bodies.query, at, 0, UINT32_MAX, 9, nullptr, 0, &near_result),
+                IST_ARGUMENT_INVALID);
     seen.status(ist_query_forget(bodies.query), IST_OK);
     seen.status(ist_query_distance(bodies.query, at, 0.01, &budget, &distance), wanted);
     seen.status(ist_query_intersects(bodies.query, at, &budget, &answer), wanted);
@@ -175,7 +190,7 @@ TEST(CQuiet, AllocatesNothing) {
   EXPECT_EQ(allocations() - before, 0u);
   EXPECT_TRUE(seen.all()) << seen.as_expected << ' ' << seen.otherwise << ' ' << seen.leaf_pairs
                           << ' ' << seen.contacts << ' ' << seen.triangle_pairs << ' '
-                          << seen.force;
+                          << seen.near_pairs << ' ' << seen.force;
 }
 
 TEST(CQuiet, MakesNoSystemCall) {

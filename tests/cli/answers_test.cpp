@@ -130,6 +130,7 @@ TEST_F(Answers, InsideIsTold) {
   EXPECT_EQ(in_ball[3]["inside"], "none");
   const CommandResult words = ist_well({"collide", ball_, small, "--voxel-size", "0.5"});
   EXPECT_TRUE(says(words.out, "the moving body is inside"));
+  EXPECT_TRUE(says(words.out, "nearest    ("));
 }
 
 // An open body has no inside: nothing is told of what might be in it.
@@ -220,11 +221,32 @@ TEST_F(Answers, FirstContactIsFoundBetweenTheSteps) {
   EXPECT_LE(last["displacement_upper"].get<double>() - last["displacement_lower"].get<double>(),
             1.01e-4);
   EXPECT_EQ(last["triangles"].size(), 2U);
+  EXPECT_NEAR(last["contact_fixed"][2].get<double>(), 1, 1e-12);
+  EXPECT_NEAR(last["contact_moving"][2].get<double>(), 1, 1e-4);
+  EXPECT_NEAR(last["contact_normal"][2].get<double>(), 1, 1e-6);
   ASSERT_EQ(lines.size(), 5u);
   EXPECT_EQ(lines[0]["displacement"], -9);
   EXPECT_EQ(lines[0]["pose"][14], 9);  // along -z
   EXPECT_TRUE(says(with({"--first-contact", "0.01"}), "first contact: displacement -1.5"));
   EXPECT_TRUE(says(with({}), "first contact: displacement -1.5"));
+  EXPECT_TRUE(says(with({}), ", 1.000)\n"));
+  const auto between = [&](const std::string& from, const std::string& to) {
+    std::vector<std::string> all = words;
+    all[8] = from;
+    all[10] = to;
+    all.emplace_back("--json");
+    return json_lines(ist_well(all).out).back();
+  };
+  const json away = between("-3", "-9");
+  EXPECT_EQ(away["first_contact"], "none");
+  for (const char* key : {"contact_fixed", "contact_moving", "contact_normal"}) {
+    EXPECT_TRUE(away[key].is_null()) << away;
+  }
+  // Triangles meet at the start: there is a place, and no normal.
+  const json start = between("-1.25", "9");
+  EXPECT_EQ(start["first_contact"], "touches-at-start");
+  EXPECT_EQ(start["contact_fixed"], start["contact_moving"]);
+  EXPECT_TRUE(start["contact_fixed"].is_array() && start["contact_normal"].is_null()) << start;
   // From the pose that is named on: half a unit is gone already.
   EXPECT_TRUE(says(with({"--move", "0,0,-0.5"}), "first contact: displacement -2.0"));
   const std::string plain = tree_without_triangles("plain.ist");
@@ -249,9 +271,13 @@ TEST_F(Answers, SelfIntersectionsAreTold) {
     EXPECT_EQ(lines.back()["first_contact"], "inside-at-start");
     EXPECT_EQ(says(ist_well(path).out, "inside the other; a surface intersects itself"), crosses);
   }
-  // Without triangles it is unknown.
+  // Without triangles it is unknown, and so are the nearest ones.
   const std::string plain = tree_without_triangles("plain.ist");
-  EXPECT_TRUE(ask(plain, small, {"--voxel-size", "0.5"})[0]["self_intersecting"].is_null());
+  const json line = ask(plain, small, {"--voxel-size", "0.5"})[0];
+  for (const char* key :
+       {"self_intersecting", "nearest_fixed", "nearest_moving", "nearest_triangles"}) {
+    EXPECT_TRUE(line[key].is_null()) << key;
+  }
 }
 
 TEST_F(Answers, AWideDepthIsTold) {

@@ -57,6 +57,9 @@ class QueryOutput : public CliTest {
         {"distance_lower", Type::number_float},
         {"distance_upper", Type::number_float},
         {"distance_narrowest", Type::number_float},
+        {"nearest_fixed", Type::array},
+        {"nearest_moving", Type::array},
+        {"nearest_triangles", Type::array},
         {"depth_lower", Type::number_float},
         {"depth_upper", Type::number_float},
         {"depth_complete", Type::boolean},
@@ -82,6 +85,17 @@ class QueryOutput : public CliTest {
     EXPECT_TRUE(line["voxel_size"][0].is_number() && line["voxel_size"][1].is_number());
     EXPECT_TRUE(!touches || line["leaf_pairs"] > 0);
     EXPECT_EQ(touches, line["distance_upper"] == 0);
+    ASSERT_EQ(line["nearest_fixed"].size(), 3u);
+    ASSERT_EQ(line["nearest_moving"].size(), 3u);
+    ASSERT_EQ(line["nearest_triangles"].size(), 2u);
+    double square = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double way =
+          line["nearest_moving"][i].get<double>() - line["nearest_fixed"][i].get<double>();
+      square += way * way;
+    }
+    EXPECT_LE(std::sqrt(square), line["distance_upper"].get<double>() + 1e-9);
+    EXPECT_GE(std::sqrt(square), line["distance_lower"].get<double>() - 1e-9);
     EXPECT_LE(line["depth_lower"], line["depth_upper"]);
     EXPECT_TRUE(line["area"] > 0 || line["depth_at_vertices"] == 0) << line;
     EXPECT_EQ(line["complete"], true);

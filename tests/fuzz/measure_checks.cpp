@@ -128,6 +128,9 @@ void MeasureChecks::check_first_contact(const Eigen::Isometry3d& pose,
     require(query_.intersects(motion.at(first.upper)).answer == Answer::kYes,
             "there is no contact where the first one is");
   }
+  require(!first.place || (first.place->distance >= first.distance.lower &&
+                           first.place->distance <= first.distance.upper),
+          "the place of the first contact has another distance");
   if (first.status == FirstContact::Status::kTouchesAtStart) return;
   for (const double part : {0.0, 0.25, 0.75, 0.96875}) {
     require(

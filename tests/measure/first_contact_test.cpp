@@ -20,13 +20,18 @@ using Vector = Eigen::Vector3d;
 using Pose = Eigen::Isometry3d;
 using ContactStatus = FirstContact::Status;
 
-// The interval is as narrow as was asked for, and at its end triangles intersect.
+// The interval is as narrow as was asked for, and at its end triangles intersect. The place is the
+// nearest one of the last distance.
 void expect_contact(BodyPair& pair, const Motion& motion, double tolerance,
                     const FirstContact& found) {
   EXPECT_EQ(found.status, ContactStatus::kContact) << to_string(found.status);
   EXPECT_TRUE(pair.meet(motion.at(found.upper)));
   EXPECT_LE(found.lower, found.upper);
   ASSERT_TRUE(found.triangles.has_value());
+  ASSERT_TRUE(found.place.has_value());
+  EXPECT_GE(found.place->distance, found.distance.lower);
+  EXPECT_LE(found.place->distance, found.distance.upper);
+  EXPECT_NEAR(found.normal.norm(), 1, 1e-15);
   if (found.grazed) return;
   const double way = motion.longest_way(pair.moving.triangles()->vertices);
   EXPECT_LE((found.upper - found.lower) * way, std::max(tolerance, found.narrowest) * 1.0001);
@@ -47,6 +52,86 @@ TEST(FirstContact, OfBoxesIsWhereTheirFacesMeet) {
   const FirstContact least = first_contact(pair.query, motion, 0);
   expect_contact(pair, motion, least.narrowest, least);
   EXPECT_LT(least.narrowest, 1e-5);
+}
+
+// A ball comes down on a plate: its lowest vertex meets the point below it.
+TEST(FirstContact, BallOnPlate_HasPlaceAndNormal) {
+  Random random(19);
+  BodyPair pair(box({-3, -3, -1}, {3, 3, 0}), icosphere(3, 1));
+  for (int i = 0; i < samples(10); ++i) {
+    Pose from = place({0.3, -0.4, 4}), to = place({0.2, 0.1, 0.2});
+    from.linear() = to.linear() = random.rotation();
+    const Motion motion = Motion::between(from, to);
+    const FirstContact found = first_contact(pair.query, motion, 1e-9);
+    expect_contact(pair, motion, 1e-9, found);
+    const Pose free = motion.at(found.lower);
+    Vector lowest(0, 0, 9);
+    for (const Vector& vertex : pair.moving.triangles()->vertices) {
+      if ((free * vertex)[2] < lowest[2]) lowest = free * vertex;
+    }
+    EXPECT_LT((found.place->moving_point - lowest).norm(), 1e-14);
+    EXPECT_LT((found.place->fixed_point - Vector(lowest[0], lowest[1], 0)).norm(), 1e-14);
+    EXPECT_NEAR(found.place->distance, lowest[2], 1e-14);
+    EXPECT_EQ(found.place->fixed_part, TrianglePart::kFace);
+    EXPECT_LE(found.place->moving_part, TrianglePart::kCorner2);
+    EXPECT_LT((found.normal - Vector(0, 0, 1)).norm(), 1e-5);
+  }
+}
+
+// The closest points of two crossing edges lie inside both.
+TEST(FirstContact, CrossingEdges_HavePlaceAndNormal) {
+  Pose from = place({0, 0, 5}), to = place({0, 0, 1});
+  from.linear() = to.linear() = (Eigen::AngleAxisd(std::numbers::pi / 2, Vector::UnitZ()) *
+                                 Eigen::AngleAxisd(std::numbers::pi / 4, Vector::UnitX()))
+                                    .toRotationMatrix();
+  const TriangleMesh bar = box({-3, -1, -1}, {3, 1, 1});
+  // The fixed bar stands on an edge as well, along x.
+  TriangleMesh stands = bar;
+  for (Vector& vertex : stands.vertices) {
+    vertex = Eigen::AngleAxisd(std::numbers::pi / 4, Vector::UnitX()) * vertex;
+  }
+  BodyPair pair(stands, bar);
+  const Motion motion = Motion::between(from, to);
+  const FirstContact found = first_contact(pair.query, motion, 1e-9);
+  expect_contact(pair, motion, 1e-9, found);
+  EXPECT_LT((found.place->fixed_point - Vector(0, 0, std::numbers::sqrt2)).norm(), 1e-12);
+  EXPECT_LT((found.place->moving_point - Vector(0, 0, std::numbers::sqrt2 + found.place->distance))
+                .norm(),
+            1e-12);
+  EXPECT_GE(found.place->fixed_part, TrianglePart::kEdge0);
+  EXPECT_LE(found.place->fixed_part, TrianglePart::kEdge2);
+  EXPECT_LT((found.normal - Vector(0, 0, 1)).norm(), 1e-5);
+}
+
+TEST(FirstContact, TouchingAtStart_HasACommonPoint) {
+  BodyPair pair(box({0, 0, 0}, {2, 2, 2}), icosphere(2, 1));
+  const FirstContact found = first_contact(pair.query, place({1, 1, 2.5}), place({1, 1, 9}), 1e-3);
+  ASSERT_EQ(found.status, ContactStatus::kTouchesAtStart);
+  ASSERT_TRUE(found.place.has_value());
+  EXPECT_EQ(found.place->triangles, *found.triangles);
+  EXPECT_EQ(found.place->distance, 0);
+  EXPECT_LT((found.place->fixed_point - found.place->moving_point).norm(), 1e-14);
+  EXPECT_NEAR(found.place->fixed_point[2], 2, 1e-14);
+  EXPECT_LE((found.place->fixed_point - Vector(1, 1, 2.5)).norm(), 1);
+  EXPECT_EQ(found.normal, Vector(0, 0, 0));
+}
+
+TEST(FirstContact, WithoutAContact_HasNoPlace) {
+  BodyPair pair(box({-2, -2, -2}, {2, 2, 2}), box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
+  const auto expect_none = [&](const FirstContact& found, ContactStatus status) {
+    EXPECT_EQ(found.status, status) << to_string(found.status);
+    EXPECT_FALSE(found.place.has_value());
+    EXPECT_EQ(found.normal, Vector(0, 0, 0));
+  };
+  const auto along = [&](const Vector& from, const Vector& to) {
+    return first_contact(pair.query, place(from), place(to), 1e-3);
+  };
+  expect_none(along({0, 0, 9}, {0, 9, 9}), ContactStatus::kNone);
+  expect_none(along({0, 0, 2.50001}, {0.001, 0, 2.50001}), ContactStatus::kGrazing);
+  expect_none(along({0, 0, 0}, {0, 0, 9}), ContactStatus::kInsideAtStart);
+  expect_none(
+      first_contact(pair.query, place({0, 0, 9}), place({0, 0, 0}), 1e-3, {.budget = {.tests = 1}}),
+      ContactStatus::kStopped);
 }
 
 TEST(FirstContact, SaysHowFarThePosesWere) {
@@ -208,6 +293,12 @@ TEST(FirstContact, HasTheSameBitsOnEveryTargetWhateverWasAskedBefore) {
     EXPECT_EQ(found.lower, truth.lower) << target;
     EXPECT_EQ(found.upper, truth.upper) << target;
     EXPECT_EQ(found.distances, truth.distances);
+    EXPECT_EQ(found.normal, truth.normal);
+    ASSERT_EQ(found.place.has_value(), truth.place.has_value());
+    if (!truth.place) continue;
+    EXPECT_EQ(found.place->triangles, truth.place->triangles) << target;
+    EXPECT_EQ(found.place->fixed_point, truth.place->fixed_point) << target;
+    EXPECT_EQ(found.place->moving_point, truth.place->moving_point) << target;
   }
 }
 

@@ -23,10 +23,10 @@ consteval auto numbers_of(auto... places) {
     numbers_of<ist::TriangleMesh, ist::MeshSource, ist::SphereTree, ist::BuildOptions,
                ist::BuildReport, ist::QueryOptions, ist::Query, ist::ReferenceQuery,
                ist::ContactManifold, ist::Contact, ist::ContactSums, ist::QueryResult,
-               ist::TrianglePairsResult, ist::DistanceResult, ist::World, ist::WorldOptions,
-               ist::WorldQuestion, ist::WorldPair, ist::WorldAnswer, ist::WorldDistance,
-               ist::Budget, ist::Placement, ist::Vector6, ist::Response, ist::ToolContacts,
-               ist::Simulation, ist::Tick, ist::TickRecord, ist::HandSettings,
+               ist::TrianglePairsResult, ist::NearPair, ist::NearPairsResult, ist::DistanceResult,
+               ist::World, ist::WorldOptions, ist::WorldQuestion, ist::WorldPair, ist::WorldAnswer,
+               ist::WorldDistance, ist::Budget, ist::Placement, ist::Vector6, ist::Response,
+               ist::ToolContacts, ist::Simulation, ist::Tick, ist::TickRecord, ist::HandSettings,
                ist::FrictionSettings, ist::GravitySettings, ist::SnapSettings, ist::ServoCallback,
                ist::LatencyHistogram, ist::ServoOptions, ist::ServoOutputs, ist::ServoReport,
                ist::Snapshot<ist::TickRecord>, ist::TickRing<ist::TickRecord>, ist::Scene,
@@ -41,6 +41,7 @@ consteval auto numbers_of(auto... places) {
         offsetof(ist::TickRecord, cpu_ns), offsetof(ist::BuiltScene, warnings),
         offsetof(ist::ServoReport, notes), offsetof(ist::SurfaceDistance, triangle),
         offsetof(ist::Penetration, narrowest), offsetof(ist::FirstContact, narrowest),
+        offsetof(ist::NearPair, moving_part), offsetof(ist::DistanceResult, rotation_error),
         offsetof(ist::ContactRegion, share));
 
 }  // namespace layout

@@ -48,6 +48,10 @@ class Command(Jaws):
             distance = self.query.distance(pose, 0.001)
             self.assertLessEqual(distance.lower, line["distance_upper"])
             self.assertGreaterEqual(distance.upper, line["distance_lower"])
+            for points in (line["nearest_fixed"], line["nearest_moving"]):
+                self.assertEqual(len(points), 3)
+            way = np.linalg.norm(np.subtract(line["nearest_moving"], line["nearest_fixed"]))
+            self.assertTrue(line["distance_lower"] - 1e-12 <= way <= line["distance_upper"] + 1e-12)
             depth = self.query.penetration(pose, 0.01)
             self.assertTrue(same_bits(depth.lower, line["depth_lower"]) and same_bits(depth.upper, line["depth_upper"]))
 
@@ -129,6 +133,7 @@ class Verbs(Jaws):
         self.assertGreater(error, 1e-4)
         for answer in (self.query.leaf_pairs(pose), self.query.leaf_pairs(pose, most=5), self.query.contacts(pose),
                        self.query.distance(pose, 0.1), self.query.triangle_pairs(pose), self.query.penetration(pose, 0.1),
+                       self.query.near_pairs(pose, 0.1), self.query.near_parts(pose, (0, 0), 1e3),
                        self.query.first_contact(np.eye(4), pose, 0.1), self.query.occlusion(pose)):
             self.assertAlmostEqual(answer.rotation_error, error, places=14, msg=type(answer).__name__)
         self.assertAlmostEqual(ist.rotation_error(pose), error, places=14)
@@ -162,7 +167,80 @@ class Verbs(Jaws):
         self.assertEqual(found.outcome, "contact")
         self.assertTrue(0 < found.lower <= found.upper < 1)
         self.assertIsNotNone(found.triangles)
-        self.assertEqual(self.query.first_contact(JAW_POSES[2], JAW_POSES[0], 1e-3).outcome, "touches at start")
+        fixed, moving = found.place
+        self.assertTrue(found.distance[0] <= np.linalg.norm(moving - fixed) <= found.distance[1])
+        np.testing.assert_allclose(np.linalg.norm(found.normal), 1, rtol=1e-14)
+        start = self.query.first_contact(JAW_POSES[2], JAW_POSES[0], 1e-3)
+        self.assertEqual(start.outcome, "touches at start")
+        np.testing.assert_allclose(*start.place, rtol=0, atol=1e-12)
+        np.testing.assert_array_equal(start.normal, [0, 0, 0])
+        none = self.query.first_contact(JAW_POSES[0], JAW_POSES[0], 1e-3)
+        self.assertEqual((none.outcome, none.place, none.normal), ("none", None, None))
+
+    def test_a_ball_meets_a_plate_at_its_lowest_point(self):
+        plate = ist.build(box([-3, -3, -1], [3, 3, 0]), 0.5)
+        wedge = ([[0, 0, 0], [1, 0, 1], [-1, 1, 1], [-1, -1, 1]], [[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]])
+        query = ist.Query(plate, ist.build(wedge, 0.5))
+        found = query.first_contact(pose_of([0, 0, 1], 0.3, [0.5, 0.25, 3]), pose_of([0, 0, 1], 0.3, [0.5, 0.25, -0.5]), 1e-6)
+        self.assertEqual(found.outcome, "contact")
+        np.testing.assert_allclose(found.place[0], [0.5, 0.25, 0], rtol=0, atol=1e-12)
+        np.testing.assert_allclose(found.place[1], [0.5, 0.25, 0], rtol=0, atol=2e-6)
+        np.testing.assert_allclose(found.normal, [0, 0, 1], rtol=0, atol=1e-6)
+        gap = query.distance(pose_of([0, 0, 1], 0.3, [0.5, 0.25, 2]), 0)
+        np.testing.assert_allclose(gap.nearest_fixed, [0.5, 0.25, 0], rtol=0, atol=1e-12)
+        np.testing.assert_allclose(gap.nearest_moving, [0.5, 0.25, 2], rtol=0, atol=1e-12)
+        np.testing.assert_array_equal(gap.direction, [0, 0, 1])
+
+    def test_distance_names_its_triangles(self):
+        gap = self.query.distance(JAW_POSES[0], 0.01)
+        fixed, moving = gap.triangles
+        parts = self.query.near_parts(JAW_POSES[0], gap.triangles, gap.upper)
+        self.assertEqual(parts.pairs[["fixed", "moving"]][0].tolist(), (fixed, moving))
+        way = gap.nearest_moving - gap.nearest_fixed
+        length = np.linalg.norm(way)
+        self.assertTrue(gap.lower <= length <= gap.upper)
+        self.assertAlmostEqual(parts.pairs["distance"][0], length, places=9)
+        np.testing.assert_allclose(gap.direction * length, way, rtol=0, atol=1e-12)
+        met = self.query.distance(JAW_POSES[2], 0)
+        np.testing.assert_array_equal(met.direction, [0, 0, 0])
+        bare = ist.build(box([0, 0, 0], [2, 2, 2]), 0.5, keep_triangles=False)
+        unknown = ist.Query(bare, bare).distance(pose_of([0, 0, 1], 0, [5, 0, 0]))
+        self.assertEqual((unknown.nearest_fixed, unknown.nearest_moving, unknown.direction, unknown.triangles), (None,) * 4)
+
+    def test_near_pairs(self):
+        margin = 0.5
+        near = self.query.near_pairs(JAW_POSES[2], margin)
+        self.assertTrue(near.complete and not near.truncated and not near.kept)
+        self.assertEqual(near.count, len(near.pairs))
+        self.assertGreater(near.count, 4096)  # more than the first array has room for
+        pairs = near.pairs
+        self.assertTrue((np.diff(pairs["distance"]) >= 0).all())
+        self.assertLessEqual(pairs["distance"][-1], margin + near.pad)
+        way = pairs["moving_point"] - pairs["fixed_point"]
+        np.testing.assert_allclose(np.linalg.norm(way, axis=1), pairs["distance"], rtol=0, atol=1e-12)
+        np.testing.assert_allclose(pairs["direction"] * pairs["distance"][:, None], way, rtol=0, atol=1e-12)
+        met = self.query.triangle_pairs(JAW_POSES[2]).pairs
+        zero = pairs[pairs["distance"] == 0]
+        self.assertLessEqual(set(met.tolist()), set(zip(zero["fixed"].tolist(), zero["moving"].tolist())))
+        out = np.empty(9, ist.NEAR_PAIR)
+        short = self.query.near_pairs(JAW_POSES[2], margin, out=out)
+        self.assertTrue(short.truncated and short.pairs.base is out and short.count == near.count)
+        self.assertEqual(short.pairs.tobytes(), pairs[:9].tobytes())
+        self.assertEqual(self.query.near_pairs(JAW_POSES[2], margin, most=3).pairs.tobytes(), pairs[:3].tobytes())
+        self.assertFalse(self.query.near_pairs(JAW_POSES[2], margin, tests=200).complete)
+        self.assertEqual(self.query.near_pairs(JAW_POSES[0], 1e-9).count, 0)
+
+    def test_near_pairs_that_are_kept_have_the_same_bits(self):
+        keeps = ist.Query(self.upper, self.lower, near_pairs=20_000)
+        self.assertGreater(keeps.nbytes, ist.Query(self.upper, self.lower).nbytes + 7_000_000)
+        kept = 0
+        for tick in range(60):
+            pose = JAW_POSES[1].copy()
+            pose[0, 3] += 2e-4 * tick
+            found = keeps.near_pairs(pose, 0.1)
+            kept += found.kept
+            self.assertEqual(found.pairs.tobytes(), self.query.near_pairs(pose, 0.1).pairs.tobytes())
+        self.assertGreater(kept, 10)
 
     def test_depth_of_an_open_body(self):
         vertices, faces = box([0, 0, 0], [2, 2, 2])

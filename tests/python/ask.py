@@ -45,6 +45,7 @@ def main(expected):
         for verb in ("leaf_pairs", "contacts", "triangle_pairs"):
             print(z, verb, bits(tuple(getattr(query, verb)(pose))))
         print(z, "distance", bits(tuple(query.distance(pose, 0.001))))
+        print(z, "near pairs", bits(tuple(query.near_pairs(pose, 0.1))))
         print(z, "penetration", bits(tuple(query.penetration(pose, 0.01))))
     print("first contact", bits(tuple(query.first_contact(pose_of(-3.0), pose_of(0.5), 0.01))))
     print("rows", bits(query.rows(np.stack([pose_of(z) for z in np.linspace(-3, 0.5, 12)]))))

@@ -136,6 +136,8 @@ class Trees(Misuse):
         query = ist.Query(bare, self.tree)
         self.assertIsNone(query.intersects(EYE))
         self.refuses(ist.InputError, "triangles", query.triangle_pairs, EYE)
+        self.refuses(ist.InputError, "triangles", query.near_pairs, EYE, 1)
+        self.refuses(ist.InputError, "triangles", query.near_parts, EYE, (0, 0), 1)
         self.refuses(ist.InputError, "triangles", query.penetration, EYE, 0.1)
         self.refuses(ist.InputError, "triangles", query.occlusion, EYE)
         self.refuses(ist.InputError, "triangles", query.rows, EYE[None], want=["penetration"])
@@ -172,6 +174,7 @@ class Queries(Misuse):
         verbs = [self.query.intersects, self.query.leaf_pairs, self.query.contacts, self.query.distance, self.query.triangle_pairs,
                  self.query.occlusion, lambda pose: ist.occlusion(self.tree, self.tree, pose),
                  lambda pose: ist.distance_map(self.tree, self.tree, pose), lambda pose: self.query.penetration(pose, 0.1),
+                 lambda pose: self.query.near_pairs(pose, 0.1), lambda pose: self.query.near_parts(pose, (0, 0), 0.1),
                  lambda pose: self.query.first_contact(pose, EYE, 0.1), lambda pose: self.query.first_contact(EYE, pose, 0.1)]
         mirrored, scaled, nan, row = EYE.copy(), 2 * EYE, EYE.copy(), EYE.copy()
         mirrored[0, 0], nan[1, 3], row[3, 0] = -1, np.nan, 1
@@ -262,10 +265,12 @@ class Queries(Misuse):
             (records.read_leaf_pairs, records.QueryResult, "leaf_pairs written sphere_tests complete truncated level "
              "distance_known distance_lower distance_upper resolution rotation_error"),
             (records.read_contacts, records.QueryResult, "leaf_pairs contacts written sphere_tests complete rotation_error"),
-            (records.read_distance, records.DistanceResult, "lower upper sphere_tests complete narrowest rotation_error"),
+            (records.read_distance, records.DistanceResult, "lower upper sphere_tests complete nearest_known narrowest rotation_error"),
             (records.read_triangle_pairs, records.TrianglePairsResult, "pairs written sphere_tests truncated complete rotation_error"),
+            (records.read_near_pairs, records.NearPairsResult,
+             "pairs written sphere_tests truncated complete found pad rotation_error"),
         ):
-            flags = ("complete", "truncated", "distance_known")
+            flags = ("complete", "truncated", "distance_known", "nearest_known")
             for value in (0, 1):
                 members = {name: value if name in flags else 3 + i for i, name in enumerate(names.split())}
                 found = read(struct(**members))
@@ -308,6 +313,7 @@ class Queries(Misuse):
         self.assertEqual(self.query.leaf_pairs(EYE, out=grown).pairs.tolist(), self.query.leaf_pairs(EYE).pairs.tolist())
         self.refuses(ist.InputError, "out", self.query.contacts, EYE, out=np.empty(5, ist.LEAF_PAIR))
         self.refuses(ist.InputError, "out", self.query.triangle_pairs, EYE, out=np.empty(5, ist.CONTACT))
+        self.refuses(ist.InputError, "out", self.query.near_pairs, EYE, 0.1, out=np.empty(5, ist.TRIANGLE_PAIR))
         self.refuses(ist.InputError, ["out", "2"], self.query.rows, np.stack([EYE, EYE]), out=np.empty(3, ist.ROW))
         self.refuses(ist.InputError, "out", ist.signed_distance, self.tree, [[0, 0, 0]], out=np.empty(2, ist.SURFACE_DISTANCE))
         self.assertEqual(len(self.query.leaf_pairs(EYE, out=np.empty(0, ist.LEAF_PAIR)).pairs), 0)
@@ -317,6 +323,13 @@ class Queries(Misuse):
             self.refuses(ist.InputError, "tests", self.query.intersects, EYE, tests=tests)
         for seconds in (-1, np.nan, "soon"):
             self.refuses(ist.InputError, "seconds", self.query.intersects, EYE, seconds=seconds)
+        for margin in (-1, np.nan, np.inf, "wide", 10**400):
+            self.refuses(ist.InputError, "margin", self.query.near_pairs, EYE, margin)
+            self.refuses(ist.InputError, "margin", self.query.near_parts, EYE, (0, 0), margin)
+        for triangles in (None, 7, (1,), (1, 2, 3), (-1, 0), (0, 2**32), (0.5, 0), ("a", 0)):
+            self.refuses(ist.InputError, "triangles", self.query.near_parts, EYE, triangles, 1)
+        self.refuses(ist.InputError, "the meshes have", self.query.near_parts, EYE, (0, 2**32 - 1), 1)
+        self.refuses(ist.InputError, "near_pairs", ist.Query, self.tree, self.tree, near_pairs=2**27)
         for tolerance in (-1, np.nan, "fine", -(10**400)):
             self.refuses(ist.InputError, "tolerance", self.query.distance, EYE, tolerance)
             self.refuses(ist.InputError, "tolerance", self.query.penetration, EYE, tolerance)

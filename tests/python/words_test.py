@@ -17,7 +17,7 @@ from ist import _measures, _mesh, _query, _sweep, _tree, _world
 PACKAGE = pathlib.Path(ist.__file__).parent
 USE = """
 import pathlib
-from typing import List, Optional
+from typing import List, Optional, Tuple
 import numpy as np
 import ist
 import ist.dask
@@ -27,6 +27,10 @@ query = ist.Query(upper, lower, workers=2, spheres="tight")
 touch: Optional[bool] = query.intersects(np.eye(4))
 pairs = query.leaf_pairs(np.eye(4), out=np.empty(10, ist.LEAF_PAIR))
 count: int = pairs.count + query.triangle_pairs(np.eye(4).tolist()).count
+near = query.near_pairs(np.eye(4), 0.1, most=20)
+parts: int = query.near_parts(np.eye(4), (0, 1), 9.0).count + near.count
+triangles: Optional[Tuple[int, int]] = query.distance(np.eye(4)).triangles
+outcome: str = query.first_contact(np.eye(4), np.eye(4), 0.1).outcome
 low: float = query.distance(np.eye(4), 0.1).lower + ist.rotation_error(np.eye(4))
 rows = query.rows(np.eye(4)[None], want=["intersects", "penetration"], progress=lambda part: None)
 force, torque, about = query.contacts(np.eye(4)).wrench(2.0)

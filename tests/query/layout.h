@@ -20,8 +20,8 @@ consteval std::array<std::size_t, 2 * sizeof...(Types)> layout_of() {
 consteval auto public_layout() {
   return layout_of<SphereTree, TriangleMesh, ReferenceQuery, Query, QueryOptions, ContactManifold,
                    Contact, ContactSums, ManifoldOptions, LeafPair, IntersectionResult, QueryResult,
-                   TrianglePairsResult, DistanceResult, World, WorldOptions, WorldQuestion,
-                   WorldPair, WorldAnswer, WorldDistance>();
+                   TrianglePairsResult, NearPair, NearPairsResult, DistanceResult, World,
+                   WorldOptions, WorldQuestion, WorldPair, WorldAnswer, WorldDistance>();
 }
 
 /// As code compiled for AVX-512 does.

@@ -138,6 +138,23 @@ TEST_P(FloatEnvironmentOfTheCInterface, ChangesNoLeafPair) {
       });
 }
 
+TEST_P(FloatEnvironmentOfTheCInterface, ChangesNoNearPair) {
+  const double margin = 0.25 * unit_;
+  changes_no_answer("ist_query_near_pairs and ist_query_near_parts", 500,
+                    [margin](ist_query* query, const double* pose, Record& record) {
+                      std::vector<ist_near_pair> pairs(1 << 12);
+                      auto result = sized<ist_near_pairs_result>();
+                      fine(ist_query_near_pairs(query, pose, margin, nullptr, pairs.data(),
+                                                pairs.size(), &result));
+                      say(result, record);
+                      for (std::size_t i = 0; i < result.written; ++i) say(pairs[i], record);
+                      fine(ist_query_near_parts(query, pose, 3, 5, 16 * margin, pairs.data(),
+                                                pairs.size(), &result));
+                      say(result, record);
+                      for (std::size_t i = 0; i < result.written; ++i) say(pairs[i], record);
+                    });
+}
+
 TEST_P(FloatEnvironmentOfTheCInterface, ChangesNoContact) {
   changes_no_answer("ist_query_contacts and ist_contact_sums_wrench", 1000,
                     [](ist_query* query, const double* pose, Record& record) {

@@ -163,6 +163,12 @@ TEST_P(FloatEnvironmentOfAMeasure, ChangesNoFirstContact) {
     record.add(found.upper);
     record.add(found.distance);
     record.add(found.distances);
+    ASSERT_TRUE(found.place.has_value());
+    for (int i = 0; i < 3; ++i) {
+      record.add(found.place->fixed_point[i]);
+      record.add(found.place->moving_point[i]);
+      record.add(found.normal[i]);
+    }
   });
 }
 

@@ -5,7 +5,7 @@ import {mkdirSync, readFileSync, writeFileSync} from 'node:fs';
 import path from 'node:path';
 import {test} from 'node:test';
 
-import {count, infoSentences, interval, short} from '../../src/viewer/page/words.js';
+import {count, infoSentences, interval, nearestWords, short} from '../../src/viewer/page/words.js';
 import {answer, answerOf, closePage, closedBy, holding, ist, linesOf, message, openPage, readout, ready} from './browser.mjs';
 import {pictureOf} from './pictures.mjs';
 import {browser, folder, stage} from './stage.mjs';
@@ -125,12 +125,13 @@ test('Accuracy: the numbers of the answer, a point for each voxel size and polic
   const said = await facts(page, 'Accuracy');
   assert.match(said['Time of a query'], /^[\d.,]+ µs, the median of groups of 20 and more$/);
   assert.deepEqual(
-    [said['Sphere tests'], said['Leaf pairs'], said.Resolution, said.Distance, said.Depth],
+    [said['Sphere tests'], said['Leaf pairs'], said.Resolution, said.Distance, said['Nearest points (yellow)'], said.Depth],
     [
       count(line.sphere_tests),
       count(line.leaf_pairs),
       `${short(line.resolution)} mm`,
       interval(line.distance_lower, line.distance_upper, 'mm'),
+      nearestWords(line),
       interval(line.depth_lower, line.depth_upper, 'mm'),
     ],
   );

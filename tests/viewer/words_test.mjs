@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {depthWords, infoSentences, interval, short} from '../../src/viewer/page/words.js';
+import {depthWords, infoSentences, interval, nearestPoints, nearestWords, short} from '../../src/viewer/page/words.js';
 import {wrenchAtMiddle} from '../../src/viewer/page/wrench.js';
 
 test('numbers are short, and tell their size', () => {
@@ -12,6 +12,15 @@ test('numbers are short, and tell their size', () => {
   assert.equal(interval(0.284, 0.2949, 'mm'), '0.284 to 0.2949 mm');
   assert.equal(interval(0.28400001, 0.28400004, 'mm'), '0.284 mm');
   assert.equal(interval(null, null, 'mm'), 'not known');
+});
+
+test('nearest points are two, one of bodies that touch, or not known', () => {
+  const line = {nearest_fixed: [1, -2.34567, 3], nearest_moving: [1, -2.34567, 3.5], distance_lower: 0.49, distance_upper: 0.5};
+  assert.deepEqual(nearestPoints(line), [line.nearest_fixed, line.nearest_moving]);
+  assert.equal(nearestWords(line), '(1, −2.346, 3) and (1, −2.346, 3.5)');
+  assert.equal(nearestWords({...line, nearest_moving: line.nearest_fixed, distance_upper: 0}), 'both at (1, −2.346, 3)');
+  assert.equal(nearestPoints({...line, nearest_fixed: null}), null);
+  assert.equal(nearestWords({nearest_fixed: null, nearest_moving: null, distance_upper: 1}), 'not known');
 });
 
 test('a depth is an interval, of open scans a lower bound, and 0 where they are apart', () => {

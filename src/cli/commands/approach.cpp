@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "answers/bodies.h"
+#include "answers/json_parts.h"
 #include "answers/measure_progress.h"
 #include "answers/refusals.h"
 #include "cli/commands/commands.h"
@@ -100,12 +101,20 @@ void print_first_contact_json(const FirstContact& found, const Path& path, const
                               {"grazed", found.grazed},
                               {"triangles", nullptr},
                               {"point", nullptr},
+                              {"contact_fixed", nullptr},
+                              {"contact_moving", nullptr},
+                              {"contact_normal", nullptr},
                               {"self_intersecting", self_intersecting(bodies)},
                               {"distances", found.distances}};
   if (found.triangles) {
     const Eigen::Vector3d point = contact_point(found, path, bodies);
-    line["triangles"] = {found.triangles->fixed, found.triangles->moving};
-    line["point"] = {point[0], point[1], point[2]};
+    line["triangles"] = pair_json(found.triangles);
+    line["point"] = point_json(point);
+  }
+  if (found.place) {
+    line["contact_fixed"] = point_json(found.place->fixed_point);
+    line["contact_moving"] = point_json(found.place->moving_point);
+    if (!found.normal.isZero(0)) line["contact_normal"] = point_json(found.normal);
   }
   print_json(line);
 }
@@ -138,6 +147,10 @@ void print_first_contact(const FirstContact& found, const Path& path, const Bodi
     const Eigen::Vector3d point = contact_point(found, path, bodies);
     fmt::print(", at ({:.5g}, {:.5g}, {:.5g}), triangles {} and {}", point[0], point[1], point[2],
                found.triangles->fixed, found.triangles->moving);
+  }
+  if (!found.normal.isZero(0)) {
+    fmt::print(", normal ({:.3f}, {:.3f}, {:.3f})", found.normal[0], found.normal[1],
+               found.normal[2]);
   }
   fmt::print("\n");
 }

@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "ist/base/float_environment.h"
+#include "ist/base/pose.h"
 #include "ist/base/rigid_move.h"
 #include "ist/measure/point_search.h"
 #include "ist/measure/require.h"
+#include "ist/query/triangles/triangle_distance.h"
+#include "ist/query/triangles/triangle_visitors.h"
 
 namespace ist {
 namespace {
@@ -17,15 +22,15 @@ using ContactStatus = FirstContact::Status;
 
 // The least part of the tolerance that rounding may take from a distance.
 constexpr double kStuck = 1.0 / 16;
-// Within the tolerance of each other, bodies go on in so many steps at most for a way as long as
-// the tolerance, each no longer than their distance is certain to be.
+// Bodies within the tolerance of each other take at most so many steps for a way as long as the
+// tolerance. Each step is at most as long as the lower bound of their distance.
 constexpr int kSlowSteps = 64;
 // So many times the way of their distance, they are looked at as well: something thin may be there.
 constexpr double kAhead = 2;
 // How sharp a distance is asked for, as a part of the one before.
 constexpr double kSharp = 1.0 / 16;
 
-// Of vertices in use: others may lie anywhere.
+// Returns the longest way of the vertices in use. Other vertices may lie anywhere.
 double longest_way(const Motion& motion, const TriangleMesh& mesh) {
   std::vector<bool> used(mesh.vertices.size());
   for (const Triangle& triangle : mesh.triangles) {
@@ -63,7 +68,7 @@ class Advance {
     const auto size = [](const SphereTree& tree) {
       return tree.bounding_radius() + tree.origin().cwiseAbs().maxCoeff();
     };
-    // Of a pose on the way: the longest way of a point counts too.
+    // The rounding at a pose on the way: the longest way of a point counts too.
     rounding_ = 0x1p-42 * (size(query.fixed()) + size(query.moving()) + way_ +
                            motion.at(0).translation().cwiseAbs().maxCoeff());
     found_.rotation_error = motion.rotation_error();
@@ -78,6 +83,7 @@ class Advance {
     if (start.answer == Answer::kYes) {
       name_triangles(0);
       if (is_busy_) return end(ContactStatus::kBusy, 0, 1);
+      found_.place = common_point(*found_.triangles);
       found_.distance = {0, 0};
       return end(ContactStatus::kTouchesAtStart, 0, 0);
     }
@@ -98,7 +104,11 @@ class Advance {
         const bool met = meet(then);
         if (met) name_triangles(then);
         if (is_busy_) return end(ContactStatus::kBusy, 0, 1);
-        if (met) return end(ContactStatus::kContact, grazed_at(at), then);
+        if (met) {
+          found_.place = nearest_;
+          if (nearest_) found_.normal = normal_;
+          return end(ContactStatus::kContact, grazed_at(at), then);
+        }
       }
       if (at >= slow_until_) {
         slow_until_ = near;
@@ -124,23 +134,23 @@ class Advance {
     found_.upper = upper;
     return found_;
   }
-  // Where the surfaces first were so near that they may have met unseen.
+  // Returns the first parameter at which the surfaces may have met unseen, or `at`.
   [[nodiscard]] double grazed_at(double at) const { return found_.grazed ? graze_.first : at; }
   [[nodiscard]] bool goes_on(double at) const {
     if (found_.distances >= options_.budget.tests || options_.budget.is_past()) return false;
     return !options_.proceed || options_.proceed(at);
   }
-  // Where the point that goes farthest is farther by so much.
+  // Returns the parameter after a way of `by` of the point that goes farthest.
   [[nodiscard]] double step(double at, double by) const {
     return by < way_ * (1 - at) ? at + by / way_ : 1;
   }
   // Rounding of a distance at one pose limits the tolerance there. It says nothing about the next
-  // pose: rounding is less where the bodies are near.
+  // pose: near bodies have less rounding.
   void limit_tolerance(double narrowest) {
     found_.narrowest = (narrowest + rounding_) / kStuck;
     tolerance_ = std::max(wanted_, found_.narrowest);
   }
-  // No more than the distance of the surfaces, and little less.
+  // Returns a lower bound of the distance of the surfaces that is little less than it.
   double distance_at(double at) {
     double sharp = kSharp * found_.distance.lower;
     do {
@@ -149,11 +159,14 @@ class Advance {
       if (note_busy(asked.status)) return 0;
       ++found_.distances;
       found_.distance = asked.distance;
+      nearest_ = asked.nearest;
       limit_tolerance(asked.narrowest);
       if (sharp <= kSharp * std::max(found_.distance.upper, kStuck * tolerance_)) break;
       sharp = kSharp * found_.distance.upper;
     } while (found_.distances < options_.budget.tests);
-    return found_.distance.lower - rounding_;
+    const double apart = found_.distance.lower - rounding_;
+    if (nearest_ && (apart > 0 || normal_.isZero(0))) normal_ = nearest_->direction();
+    return apart;
   }
   [[nodiscard]] bool meet(double at) {
     ++found_.verdicts;
@@ -165,6 +178,13 @@ class Advance {
     if (!note_busy(query_.triangle_pairs(motion_.at(at), first).status)) {
       found_.triangles = first[0];
     }
+  }
+  // Returns a common point of triangles that intersect at the first pose.
+  [[nodiscard]] NearPair common_point(const TrianglePair& triangles) const {
+    const Eigen::Isometry3d start = *project_to_rigid(motion_.at(0));
+    return closest_points(corners_of(*query_.fixed().triangles(), triangles.fixed),
+                          MovedTriangles(*query_.moving().triangles(), start)[triangles.moving],
+                          triangles);
   }
   // Another thread uses the query: no answer counts.
   bool note_busy(QueryStatus status) {
@@ -179,6 +199,8 @@ class Advance {
   double way_;     // of the point that goes farthest
   double rounding_ = 0, tolerance_ = 0;
   FirstContact found_;
+  std::optional<NearPair> nearest_;  // of the last distance
+  Eigen::Vector3d normal_{0, 0, 0};
   bool is_busy_ = false;
   std::pair<double, double> graze_{0, 0};
   double slow_until_ = 0;

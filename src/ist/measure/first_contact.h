@@ -54,9 +54,8 @@ struct FirstContact {
   enum class Status : std::uint8_t {
     kContact,  ///< at `upper` triangles intersect, before `lower` none do
     kNone,     ///< none intersect on the whole motion
-    kGrazing,  ///< at `lower` the surfaces are no farther apart than the tolerance; triangles
-               ///< may intersect at times from there to `upper`, were not found to, and do not
-               ///< elsewhere
+    kGrazing,  ///< at `lower` the surfaces are within the tolerance; triangles may intersect from
+               ///< `lower` to `upper`, but none were found, and none do elsewhere
     kTouchesAtStart,  ///< triangles intersect at the first pose
     kInsideAtStart,   ///< none do there, but a body lies inside the other, or a part of it
     kStopped,         ///< the budget or the caller ended the search: before `lower` none intersect
@@ -64,14 +63,22 @@ struct FirstContact {
   };
 
   Status status = Status::kStopped;  ///< says which members count
-  /// The parameter of the first contact lies in [lower, upper], which with kContact are no farther
-  /// apart than any point of the moving body takes to go the tolerance; farther where the surfaces
+  /// The parameter of the first contact lies in [lower, upper]. With kContact no point of the
+  /// moving body goes farther than the tolerance from `lower` to `upper`, unless the surfaces
   /// grazed before: `grazed`. [0, 0] at the start; [1, 1] with kNone; [0, 1] if busy.
   double lower = 0,     ///< the parameter before which no triangles intersect
-      upper = 1;        ///< where the contact is at the latest
+      upper = 1;        ///< the latest parameter of the contact
   bool grazed = false;  ///< the surfaces grazed before, and may have met unseen
   /// Triangles that intersect at `upper`.
   std::optional<TrianglePair> triangles = std::nullopt;
+  /// The closest points at the last pose before the contact that is known to be free, fixed
+  /// coordinates. This pose is at `lower`, unless `grazed`. With kTouchesAtStart it is a common
+  /// point of `triangles`. Empty without a contact, and if DistanceResult::nearest is empty there.
+  std::optional<NearPair> place = std::nullopt;
+  /// The unit vector from the fixed to the moving body there, at the last distance that is above
+  /// its rounding. 0 without a place, with kTouchesAtStart, and if no distance is above rounding
+  /// and the points are the same.
+  Eigen::Vector3d normal = {0, 0, 0};
   /// The distance of the surfaces at `lower`, mesh units; [0, infinity] if none was asked for.
   DistanceInterval distance{0, std::numeric_limits<double>::infinity()};
   /// The least tolerance that is reached at the last pose of the search, mesh units: rounding.
@@ -95,17 +102,17 @@ struct FirstContactOptions {
 
 /// Finds the first contact along a motion: conservative advancement. A certified distance of the
 /// surfaces lets the body go on until some vertex has gone as far; within the tolerance of a
-/// contact, triangles decide. It passes through nothing, however thin or fast. Only where the
-/// surfaces stay within a 64th of the tolerance of each other, or as near as rounding, does it go
-/// on by the tolerance at once, and says so: `grazed`.
+/// contact, triangles decide. It passes through nothing, however thin or fast. If the surfaces stay
+/// within a 64th of the tolerance of each other, or within rounding, it goes on by the tolerance at
+/// once, and sets `grazed`.
 ///
 /// @param query     of two trees with triangles
 /// @param motion    of the moving body, fixed coordinates
 /// @param tolerance mesh units: how far a point of the moving body may go from `lower` to `upper`
 /// @param options   limits of the search
 ///
-/// `query` forgets what it kept. An answer has the same bits on every instruction set. Cost: that
-/// of some 10 to 40 distances for jaws that close; along surfaces within the tolerance, of 65
+/// `query` forgets its earlier questions. An answer has the same bits on every instruction set.
+/// Cost: some 10 to 40 distances for jaws that close; along surfaces within the tolerance, 65
 /// distances for a way as long as the tolerance. Throws kTrianglesMissing, and kArgumentInvalid for
 /// a tolerance that is negative or NaN. Source: B. Mirtich, Impulse-based dynamic simulation of
 /// rigid body systems, dissertation, University of California at Berkeley, 1996.

@@ -24,6 +24,7 @@ Follow = Callable[[float], Any]
 
 LEAF_PAIR: np.dtype[np.void]
 TRIANGLE_PAIR: np.dtype[np.void]
+NEAR_PAIR: np.dtype[np.void]
 CONTACT: np.dtype[np.void]
 SURFACE_DISTANCE: np.dtype[np.void]
 CONTACT_REGION: np.dtype[np.void]
@@ -157,12 +158,31 @@ class Distance(NamedTuple):
     narrowest: float
     sphere_tests: int
     rotation_error: float
+    memory_of_nearest: Optional[bytearray]
+    @property
+    def nearest_fixed(self) -> Optional[F8]: ...
+    @property
+    def nearest_moving(self) -> Optional[F8]: ...
+    @property
+    def direction(self) -> Optional[F8]: ...
+    @property
+    def triangles(self) -> Optional[Tuple[int, int]]: ...
 
 class TrianglePairs(NamedTuple):
     pairs: Records
     count: int  # type: ignore[assignment]  # not the method of tuples
     complete: bool
     truncated: bool
+    sphere_tests: int
+    rotation_error: float
+
+class NearPairs(NamedTuple):
+    pairs: Records
+    count: int  # type: ignore[assignment]  # not the method of tuples
+    complete: bool
+    truncated: bool
+    pad: float
+    kept: bool
     sphere_tests: int
     rotation_error: float
 
@@ -192,6 +212,8 @@ class FirstContact(NamedTuple):
     distances: int
     self_intersecting: Optional[Literal["fixed", "moving", "both"]]
     rotation_error: float
+    place: Optional[Tuple[F8, F8]]
+    normal: Optional[F8]
 
 class BodyOcclusion(NamedTuple):
     distances: Records
@@ -219,6 +241,7 @@ class Query:
         contacts: int = 32,
         margin: float = 0.0,
         front_pairs: int = 0,
+        near_pairs: int = 0,
         target: Optional[str] = None,
     ) -> None: ...
     @property
@@ -260,6 +283,17 @@ class Query:
         tests: int = 0,
         seconds: float = 0.0,
     ) -> TrianglePairs: ...
+    def near_pairs(
+        self,
+        pose: ArrayLike,
+        margin: float,
+        *,
+        out: Optional[Records] = None,
+        most: Optional[int] = None,
+        tests: int = 0,
+        seconds: float = 0.0,
+    ) -> NearPairs: ...
+    def near_parts(self, pose: ArrayLike, triangles: Sequence[int], margin: float) -> NearPairs: ...
     def penetration(
         self,
         pose: ArrayLike,

@@ -4,7 +4,7 @@ from typing import List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
-from ._c import CONTACT_SUMS
+from ._c import CONTACT_SUMS, DistanceResult
 
 made = tuple.__new__  # made(LeafPairs, members): an answer, in half the time of LeafPairs(*members)
 
@@ -13,11 +13,11 @@ class LeafPairs(NamedTuple):
     """Pairs of voxels whose bounds overlap, sorted by fixed and then by moving voxel."""
 
     pairs: np.ndarray  # LEAF_PAIR
-    count: int  # all that were found, in the array or not
+    count: int  # all pairs found, in the array or not
     complete: bool  # False: a limit ended the search
     truncated: bool  # True: the array was too short and holds the first pairs
     level: int  # levels above the leaves at which the search ended
-    distance: Optional[Tuple[float, float]]  # the surfaces' distance lies between, where it is known
+    distance: Optional[Tuple[float, float]]  # the surfaces' distance lies between, if it is known
     resolution: float  # the surfaces in a pair are no farther apart
     sphere_tests: int
     rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|
@@ -56,6 +56,33 @@ class Distance(NamedTuple):
     narrowest: float  # no tolerance below this width can be reached here
     sphere_tests: int
     rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|
+    memory_of_nearest: Optional[bytearray]  # the library's struct, which the properties read
+
+    def _numbers(self, name, dtype, count):
+        memory = self.memory_of_nearest
+        return None if memory is None else np.frombuffer(memory, dtype, count, getattr(DistanceResult, name).offset)
+
+    @property
+    def nearest_fixed(self):
+        """The closest point of the nearest triangles that were found, on the fixed one: (3,), fixed mesh coordinates. None
+        without triangles, and if no pair was measured."""
+        return self._numbers("nearest_fixed", np.float64, 3)
+
+    @property
+    def nearest_moving(self):
+        """The same on the moving triangle; a common point if the triangles intersect."""
+        return self._numbers("nearest_moving", np.float64, 3)
+
+    @property
+    def direction(self):
+        """The unit vector from nearest_fixed to nearest_moving; 0 if the triangles intersect; or None."""
+        return self._numbers("direction", np.float64, 3)
+
+    @property
+    def triangles(self):
+        """The indices of these triangles, fixed and moving, or None."""
+        indices = self._numbers("nearest_triangles", np.uint32, 2)
+        return None if indices is None else (int(indices[0]), int(indices[1]))
 
 
 class TrianglePairs(NamedTuple):
@@ -65,6 +92,19 @@ class TrianglePairs(NamedTuple):
     count: int
     complete: bool
     truncated: bool
+    sphere_tests: int
+    rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|
+
+
+class NearPairs(NamedTuple):
+    """Pairs of triangles, or of their parts, within a margin, sorted by distance."""
+
+    pairs: np.ndarray  # NEAR_PAIR, fixed mesh coordinates
+    count: int  # all pairs found, in the array or not
+    complete: bool  # False: a limit ended the search, or the bodies are too far apart for float
+    truncated: bool  # True: the array was too short and holds the nearest pairs
+    pad: float  # no pair is farther apart than the margin and this, mesh units
+    kept: bool  # the answer is of pairs kept from earlier poses, with the same bits
     sphere_tests: int
     rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|
 
@@ -120,12 +160,15 @@ class FirstContact(NamedTuple):
     lower: float
     upper: float
     distance: Tuple[float, float]  # of the surfaces at `lower`
-    triangles: Optional[Tuple[int, int]]  # fixed and moving, that intersect at `upper`, where they are known
+    triangles: Optional[Tuple[int, int]]  # fixed and moving, that intersect at `upper`, if they are known
     grazed: bool
     narrowest: float
     distances: int  # asked for
     self_intersecting: Optional[str]  # "fixed", "moving" or "both": that surface intersects itself
     rotation_error: float  # of the given poses, the larger one
+    place: Optional[Tuple[np.ndarray, np.ndarray]]  # closest points before the contact, on the fixed and on the moving
+    # surface, (3,) each, fixed mesh coordinates; twice a common point with "touches at start"; None without a contact
+    normal: Optional[np.ndarray]  # (3,), unit vector from the fixed to the moving body there; 0 with "touches at start"
 
 
 class BodyOcclusion(NamedTuple):

@@ -4,19 +4,23 @@ import struct
 import sys
 import time
 
-from ctypes import addressof, byref, c_double, c_int32, c_size_t, c_uint64, c_void_p
+from ctypes import addressof, byref, c_double, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
 
 import numpy as np
 
 from . import _measures
-from ._answers import Contacts, Distance, LeafPairs, TrianglePairs, made
+from ._answers import Contacts, Distance, LeafPairs, NearPairs, TrianglePairs, made
 from ._arrays import Room, address, budget_of, count_of, floats, number_of
 from ._c import (
     CONTACT,
+    IST_FOUND_KEPT,
+    IST_MOST_NEAR_PARTS,
     LEAF_PAIR,
+    NEAR_PAIR,
     TRIANGLE_PAIR,
     ContactSums,
     DistanceResult,
+    NearPairsResult,
     QueryInfo,
     QueryOptions,
     QueryResult,
@@ -31,6 +35,7 @@ _FLOAT64 = np.dtype(np.float64)
 _ANSWERS = (None, False, None, True)  # IST_ANSWER_UNKNOWN, NO, NEAR, YES
 _intersects, _leaf_pairs, _contacts = bare("ist_query_intersects"), bare("ist_query_leaf_pairs"), bare("ist_query_contacts")
 _distance, _triangle_pairs = bare("ist_query_distance"), bare("ist_query_triangle_pairs")
+_near_pairs, _near_parts = bare("ist_query_near_pairs"), bare("ist_query_near_parts")
 _CODES = {c_double: "d", c_int32: "i", c_uint64: "Q"}
 _FLAG = "?3x" if sys.byteorder == "little" else "3x?"  # a c_int32 of 0 or 1: one byte is read as a bool
 
@@ -53,11 +58,12 @@ read_leaf_pairs = reader(
     "rotation_error",
 )
 read_contacts = reader(QueryResult, "leaf_pairs contacts written sphere_tests complete? rotation_error")
-read_distance = reader(DistanceResult, "lower upper sphere_tests complete? narrowest rotation_error")
+read_distance = reader(DistanceResult, "lower upper sphere_tests complete? nearest_known? narrowest rotation_error")
 read_triangle_pairs = reader(TrianglePairsResult, "pairs written sphere_tests truncated? complete? rotation_error")
+read_near_pairs = reader(NearPairsResult, "pairs written sphere_tests truncated? complete? found pad rotation_error")
 
 
-def options_of(spheres, workers, contacts, margin, front_pairs, target):
+def options_of(spheres, workers, contacts, margin, front_pairs, target, near_pairs=0):
     """Returns the library's options of a query, checked."""
     if workers not in (1, 2):
         refuse(f"workers is {workers!r}: pass 1 or 2")
@@ -74,6 +80,7 @@ def options_of(spheres, workers, contacts, margin, front_pairs, target):
         target=None if target is None else str(target).encode("utf-8", "replace"),
         margin=begins,
         front_pairs=count_of(front_pairs, "front_pairs"),
+        near_pairs=count_of(near_pairs, "near_pairs"),
     )
 
 
@@ -85,7 +92,8 @@ class Query(Lone):
     gets a BusyError. Calls let other threads of Python run. Arrays given as `out` are filled in place.
 
     contacts: the most contacts, -1 for none. margin: the distance at which springs begin, 0 to 2 mean voxel
-    sizes; 0: where surfaces meet. front_pairs: leaf pairs kept in slow motion, from pose to pose. workers: 2 for a resident thread that helps.
+    sizes; 0: where surfaces meet. front_pairs, near_pairs: the most leaf pairs, and near pairs of triangles, that are kept in
+    slow motion from pose to pose. workers: 2 for a resident thread that helps.
 
     >>> import ist, numpy as np
     >>> upper, lower = (ist.build(jaw, voxel_size=0.8) for jaw in ist.jaws())
@@ -111,11 +119,12 @@ class Query(Lone):
         contacts=32,
         margin=0.0,
         front_pairs=0,
+        near_pairs=0,
         target=None,
     ):
         for tree, name in ((fixed, "fixed"), (moving, "moving")):
             need_tree(tree, name)
-        options = options_of(spheres, workers, contacts, margin, front_pairs, target)
+        options = options_of(spheres, workers, contacts, margin, front_pairs, target, near_pairs)
         out = Out()
         check(LIBRARY.ist_query_create(fixed._need(), moving._need(), addressof(options), out.address))
         super().__init__(out.handle)
@@ -128,11 +137,12 @@ class Query(Lone):
         self._by_row = np.frombuffer(pose).reshape(4, 4).T  # the library's numbers, row by row
         self._pose = byref(pose)
         self._pairs, self._points, self._triangles = Room(LEAF_PAIR), Room(CONTACT), Room(TRIANGLE_PAIR)
-        self._tolerance = c_double()
+        self._near = Room(NEAR_PAIR)
+        self._tolerance, self._margin = c_double(), c_double()
         self._found, self._sums, self._answer = QueryResult(), ContactSums(), c_int32()
-        self._apart, self._met = DistanceResult(), TrianglePairsResult()
+        self._apart, self._met, self._listed = DistanceResult(), TrianglePairsResult(), NearPairsResult()
         self._found_at, self._sums_at, self._answer_at = byref(self._found), byref(self._sums), byref(self._answer)
-        self._apart_at, self._met_at = byref(self._apart), byref(self._met)
+        self._apart_at, self._met_at, self._listed_at = byref(self._apart), byref(self._met), byref(self._listed)
 
     spheres = property(lambda self: SPHERES[self._info.spheres], doc="The bounds in use.")
     target = property(lambda self: self._info.target.decode(), doc="The instruction set in use.")
@@ -207,19 +217,76 @@ class Query(Lone):
         finally:
             self._lock.release()
 
-    # Asks once with some room, and again where there was too little: the member `count` of the result says how much it takes.
-    def _room(self, dtype, most, budget, ask, limit, found, count):
+    def near_pairs(self, pose, margin, *, out=None, most=None, tests=0, seconds=0.0):
+        """All pairs of triangles within a margin, mesh units, with their closest points.
+
+        Pairs that intersect are among them. They are sorted by distance. p_fixed = pose @ p_moving. `out`, `most`: as
+        leaf_pairs(). For a body that moves slowly, Query(near_pairs=2048) keeps pairs, and answers many times faster.
+
+        >>> import ist, numpy as np
+        >>> upper, lower = (ist.build(jaw, voxel_size=0.8) for jaw in ist.jaws())
+        >>> near = ist.Query(upper, lower).near_pairs(np.eye(4), 0.1)
+        >>> bool(near.complete and (near.pairs["distance"] <= 0.1 + near.pad).all())
+        True
+        """
+        budget, limit = self._begin(pose, tests, seconds)
+        try:
+            self._margin.value = number_of(margin, "margin")
+            if out is None:
+                out = self._room(NEAR_PAIR, most, budget, _near_pairs, limit, self._listed, "pairs", self._margin)
+            else:
+                room = self._near
+                room.take(out)
+                status = _near_pairs(self._self, self._pose, self._margin, limit, room.place, room.length, self._listed_at)
+                if status:
+                    raise error_of(status)
+            return self._made_near(out)
+        finally:
+            self._lock.release()
+
+    def near_parts(self, pose, triangles, margin):
+        """The parts of two triangles, (fixed, moving) by index, within a margin, mesh units.
+
+        Each corner above the face of the other triangle, and of each two edges the closest points: 15 at most, sorted by
+        distance. p_fixed = pose @ p_moving.
+        """
+        self._begin(pose, 0, 0.0)
+        try:
+            try:
+                fixed, moving = triangles
+            except (TypeError, ValueError):
+                refuse(f"triangles is {triangles!r}: pass two indices, of the fixed and of the moving mesh")
+            most = 2**32 - 1
+            indices = c_uint32(count_of(fixed, "triangles[0]", most)), c_uint32(count_of(moving, "triangles[1]", most))
+            self._margin.value = number_of(margin, "margin")
+            out = np.empty(IST_MOST_NEAR_PARTS, NEAR_PAIR)
+            place, length = c_void_p(address(out)), c_size_t(len(out))
+            status = _near_parts(self._self, self._pose, *indices, self._margin, place, length, self._listed_at)
+            if status:
+                raise error_of(status)
+            return self._made_near(out)
+        finally:
+            self._lock.release()
+
+    # The last answer of near_pairs() or near_parts(), in an array.
+    def _made_near(self, out):
+        count, written, tested, truncated, complete, found, pad, off = read_near_pairs(self._listed)
+        return made(NearPairs, (out[:written], count, complete, truncated, pad, found == IST_FOUND_KEPT, tested, off))
+
+    # Asks once with some room, and again if there was too little: the member `count` of the result says how much it takes.
+    # `before` stands before the limit in the arguments.
+    def _room(self, dtype, most, budget, ask, limit, found, count, *before):
         room = 4096 if most is None else count_of(most, "most")
         end = time.monotonic_ns() + budget.nanoseconds if budget is not None and budget.nanoseconds > 0 else None
         while True:
             array = np.empty(room, dtype)
-            status = ask(self._self, self._pose, limit, c_void_p(address(array)), c_size_t(room), byref(found))
+            status = ask(self._self, self._pose, *before, limit, c_void_p(address(array)), c_size_t(room), byref(found))
             if status:
                 raise error_of(status)
             if most is not None or getattr(found, count) <= room:
                 return array
             room = getattr(found, count)
-            if end is not None:  # the time is that of the whole call
+            if end is not None:  # the limit holds for the whole call
                 budget.nanoseconds = max(1, end - time.monotonic_ns())
 
     def contacts(self, pose, *, out=None, tests=0, seconds=0.0):
@@ -250,9 +317,17 @@ class Query(Lone):
             self._lock.release()
 
     def distance(self, pose, tolerance=0.0, *, tests=0, seconds=0.0):
-        """The distance between the surfaces, an interval no wider than the tolerance. p_fixed = pose @ p_moving.
+        """The distance between the surfaces, an interval no wider than the tolerance, and the nearest triangles that were found.
 
-        A body wholly inside another has a positive distance.
+        p_fixed = pose @ p_moving. A body wholly inside another has a positive distance.
+
+        >>> import ist, numpy as np
+        >>> upper, lower = (ist.build(jaw, voxel_size=0.8) for jaw in ist.jaws())
+        >>> pose = np.eye(4)
+        >>> pose[2, 3] = -1.5
+        >>> gap = ist.Query(upper, lower).distance(pose, 0.01)
+        >>> bool(gap.lower <= np.linalg.norm(gap.nearest_moving - gap.nearest_fixed) <= gap.upper)
+        True
         """
         budget, limit = self._begin(pose, tests, seconds)
         try:
@@ -260,8 +335,8 @@ class Query(Lone):
             status = _distance(self._self, self._pose, self._tolerance, limit, self._apart_at)
             if status:
                 raise error_of(status)
-            lower, upper, tested, complete, narrowest, off = read_distance(self._apart)
-            return made(Distance, (lower, upper, complete, narrowest, tested, off))
+            lower, upper, tested, complete, known, narrowest, off = read_distance(self._apart)
+            return made(Distance, (lower, upper, complete, narrowest, tested, off, bytearray(self._apart) if known else None))
         finally:
             self._lock.release()
 

@@ -39,8 +39,6 @@ double median_time(answers::Engine& engine, const Eigen::Isometry3d& pose) {
   return *middle;
 }
 
-nlohmann::ordered_json triple(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
-
 nlohmann::ordered_json contacts_of(const ContactManifold& manifold, double stiffness,
                                    Reply& reply) {
   std::vector<double> positions, normals, depths, weights;
@@ -55,9 +53,9 @@ nlohmann::ordered_json contacts_of(const ContactManifold& manifold, double stiff
           {"normals", reply.array(std::move(normals))},
           {"depths", reply.array(std::move(depths))},
           {"weights", reply.array(std::move(weights))},
-          {"force", triple(wrench.force)},
-          {"torque", triple(wrench.torque)},
-          {"about", triple(manifold.sums().about)}};
+          {"force", answers::point_json(wrench.force)},
+          {"torque", answers::point_json(wrench.torque)},
+          {"about", answers::point_json(manifold.sums().about)}};
 }
 
 }  // namespace

@@ -55,7 +55,26 @@ export function interval(lower, upper, unit) {
 }
 
 /**
- * How deep two bodies are in each other, of a line of `ist collide --json` or `ist occlusion --json`. Of open scans a
+ * @param {Line} line  of `ist collide --json`
+ * @returns {[number[], number[]] | null}  the nearest points of the fixed and of the moving body, fixed coordinates
+ */
+export function nearestPoints({nearest_fixed: fixed, nearest_moving: moving}) {
+  return Array.isArray(fixed) && Array.isArray(moving) ? [fixed, moving] : null;
+}
+
+/**
+ * @param {Line} line  of `ist collide --json`
+ * @returns {string}  both points, or one if the bodies touch
+ */
+export function nearestWords(line) {
+  const points = nearestPoints(line);
+  if (!points) return 'not known';
+  const [fixed, moving] = points.map((point) => `(${point.map((value) => short(value)).join(', ')})`);
+  return line.distance_upper === 0 ? `both at ${fixed}` : `${fixed} and ${moving}`;
+}
+
+/**
+ * How deep two bodies are in each other, by a line of `ist collide --json` or `ist occlusion --json`. For open scans a
  * lower bound is known, the depth of the deepest vertex. If no vertex is inside, the depth is 0 only if they are apart.
  * @param {Line} line
  * @param {string} unit

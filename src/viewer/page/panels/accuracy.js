@@ -7,7 +7,8 @@ import {button, select, slider} from '../ui/controls.js';
 import {element} from '../ui/element.js';
 import {plot} from '../ui/plot.js';
 import {facts, table} from '../ui/table.js';
-import {count, depthWords, interval, short, unitWord} from '../words.js';
+import {makeNearestLine} from '../view/nearest_line.js';
+import {count, depthWords, interval, nearestWords, short, unitWord} from '../words.js';
 
 /** @typedef {import('../context.js').State} State */
 /** @typedef {import('../context.js').Answer} Answer */
@@ -25,7 +26,8 @@ const tourWords = 'Visit seven voxel sizes';
 const tour = [2, 1.4, 1, 0.7, 0.5, 0.4, 0.3];
 
 /** @type {import('../context.js').MakePanel} */
-export function makeAccuracyPanel({store, loader}) {
+export function makeAccuracyPanel({store, stage, loader}) {
+  const nearest = makeNearestLine(stage, store);
   /** @type {Visited[]} */
   let visited = [];
   const scale = () => scaleFor(store.get().bodies.moving?.extent ?? 110);
@@ -157,7 +159,16 @@ export function makeAccuracyPanel({store, loader}) {
     policy.offer(policyChoices(trees.policies));
     policy.set(chosen ?? trees.policies[trees.policies.length - 1]);
   }
-  return {id: 'accuracy', title: 'Accuracy', element: panel, shown: fill, hidden: () => {}};
+  return {
+    id: 'accuracy',
+    title: 'Accuracy',
+    element: panel,
+    shown() {
+      fill();
+      nearest.show(true);
+    },
+    hidden: () => nearest.show(false),
+  };
 }
 
 /** @param {Policy[]} offered */
@@ -187,6 +198,7 @@ function answerFacts(answer, unit) {
     ['Resolution', `${short(line.resolution)} ${unit}`],
     ['Touch', line.touch],
     ['Distance', interval(line.distance_lower, line.distance_upper, unit)],
+    ['Nearest points (yellow)', nearestWords(line)],
     ['Depth', depthWords(line, unit)],
   ]);
 }

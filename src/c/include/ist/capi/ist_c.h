@@ -21,7 +21,7 @@
  *
  * Structs that begin with `struct_size`: set it to sizeof and all other members to zero; a zero
  * member selects its default. A program compiled with an older header passes a shorter struct; the
- * missing members take their defaults. A longer struct is accepted where all members unknown to
+ * missing members take their defaults. A longer struct is accepted if all members unknown to
  * this library are zero. A size below 16, above 4096 or not a multiple of 8 gives IST_STRUCT_SIZE.
  *
  * Poses are double[16] in column-major order: [0..2], [4..6] and [8..10] are the images of the x, y
@@ -49,7 +49,7 @@ extern "C" {
 typedef struct ist_mesh ist_mesh;
 
 /** Creates a mesh from copies of 3 * vertex_count coordinates and 3 * triangle_count indices. The
- * vertices of a triangle run counter-clockwise, seen from outside. An array may be NULL where its
+ * vertices of a triangle run counter-clockwise, seen from outside. An array may be NULL if its
  * count is 0, but a mesh without triangles is an error.
  *
  * Errors: IST_MESH_EMPTY, IST_MESH_POINTS_ONLY; IST_MESH_NOT_FINITE and IST_MESH_BAD_INDEX, with
@@ -99,7 +99,7 @@ IST_C_API ist_status ist_mesh_get_info(const ist_mesh* mesh, const ist_progress*
 
 /** Copies the first `vertex_capacity` vertices, 3 coordinates each, and the first
  * `triangle_capacity` triangles, 3 indices each, in the order of the indices in answers. An array
- * may be NULL where its capacity is 0. Cost: 1 ns per number. */
+ * may be NULL if its capacity is 0. Cost: 1 ns per number. */
 IST_C_API ist_status ist_mesh_copy(const ist_mesh* mesh, double* vertices, size_t vertex_capacity,
                                    uint32_t* triangles, size_t triangle_capacity) IST_NOEXCEPT;
 
@@ -206,7 +206,7 @@ IST_C_API ist_status ist_tree_self_intersections(const ist_tree* tree,
                                                  uint64_t* pairs) IST_NOEXCEPT;
 
 /** Copies the centres of the first `capacity` leaves, 3 mesh coordinates each, in the order of the
- * indices in leaf pairs. A leaf is a cube of edge voxel_size. `centres` may be NULL where
+ * indices in leaf pairs. A leaf is a cube of edge voxel_size. `centres` may be NULL if
  * `capacity` is 0. Cost: 20 ns per leaf. */
 IST_C_API ist_status ist_tree_copy_leaf_centres(const ist_tree* tree, double* centres,
                                                 size_t capacity) IST_NOEXCEPT;
@@ -231,6 +231,8 @@ typedef struct ist_query_options {
                               default 0: where surfaces meet, to within 0.25 with slabs */
   uint64_t front_pairs;    /**< most leaf pairs kept in slow motion, 224 bytes each, to 2^26;
                               0: none */
+  uint64_t near_pairs;     /**< most near pairs of triangles kept in slow motion, 400 bytes each, to
+                              2^26; 0: none. 2,048 is a good number */
 } ist_query_options;
 
 /** Creates a query and reserves all its memory. `options` may be NULL. Both trees may be the same,
@@ -299,7 +301,7 @@ typedef struct ist_budget {
 } ist_budget;
 
 /** Finds all pairs of leaves with overlapping bounds, sorted by fixed and then by moving leaf.
- * `pairs` may be NULL where `capacity` is 0, to count; `budget` may be NULL: no limit. With a
+ * `pairs` may be NULL if `capacity` is 0, to count; `budget` may be NULL: no limit. With a
  * budget the distance is known. Errors: IST_POSE_INVALID. Cost: 1 to 3 ns per test. [real time] */
 IST_C_API ist_status ist_query_leaf_pairs(ist_query* query, const double pose[16],
                                           const ist_budget* budget, ist_leaf_pair* pairs,
@@ -343,19 +345,25 @@ IST_C_API ist_status ist_contact_sums_wrench(const ist_contact_sums* sums, doubl
 
 /** The answer of ist_query_distance; lengths in mesh units. */
 typedef struct ist_distance_result {
-  size_t struct_size;    /**< the size of this struct, bytes */
-  double lower,          /**< the distance between the surfaces is no less */
-      upper;             /**< and no more */
-  uint64_t sphere_tests; /**< tests made, as ist_budget counts them */
-  int32_t complete;      /**< 1: the interval is no wider than the tolerance */
-  int32_t reserved;      /**< zero */
-  double narrowest;      /**< no tolerance below this width can be reached at this pose */
-  double rotation_error; /**< of the given pose: the largest entry of |R^T R - I| */
+  size_t struct_size;      /**< the size of this struct, bytes */
+  double lower,            /**< the distance between the surfaces is no less */
+      upper;               /**< and no more */
+  uint64_t sphere_tests;   /**< tests made, as ist_budget counts them */
+  int32_t complete;        /**< 1: the interval is no wider than the tolerance */
+  int32_t nearest_known;   /**< 1: the members below hold the nearest triangles that were found */
+  double narrowest;        /**< no tolerance below this width can be reached at this pose */
+  double rotation_error;   /**< of the given pose: the largest entry of |R^T R - I| */
+  double nearest_fixed[3], /**< the fixed triangle's closest point, fixed mesh coordinates */
+      nearest_moving[3];   /**< the moving triangle's; a common point if they intersect */
+  double direction[3];     /**< of unit length, from the fixed point to the moving one; 0 if
+                              the triangles intersect */
+  uint32_t nearest_triangles[2]; /**< of the fixed and of the moving mesh */
 } ist_distance_result;
 
-/** Bounds the distance between the surfaces by an interval no wider than `tolerance`, or
- * `narrowest` where that is more; `budget` as for leaf pairs. Errors: IST_POSE_INVALID,
- * IST_ARGUMENT_INVALID. Cost: 0.02 to 0.7 ms for jaws. [real time] */
+/** Bounds the distance between the surfaces by an interval no wider than `tolerance`, or by
+ * `narrowest` if that is more. Finds triangles whose distance lies in the interval, if both trees
+ * have triangles. `budget` as for leaf pairs. Errors: IST_POSE_INVALID, IST_ARGUMENT_INVALID.
+ * Cost: 0.02 to 0.7 ms for jaws. [real time] */
 IST_C_API ist_status ist_query_distance(ist_query* query, const double pose[16], double tolerance,
                                         const ist_budget* budget,
                                         ist_distance_result* result) IST_NOEXCEPT;
@@ -410,6 +418,68 @@ IST_C_API ist_status ist_query_triangle_pairs(ist_query* query, const double pos
                                               const ist_budget* budget, ist_triangle_pair* pairs,
                                               size_t capacity,
                                               ist_triangle_pairs_result* result) IST_NOEXCEPT;
+
+/** A part of a triangle. */
+enum {
+  IST_PART_CORNER0 = 0, /**< the first corner */
+  IST_PART_CORNER1 = 1, /**< the second corner */
+  IST_PART_CORNER2 = 2, /**< the third corner */
+  IST_PART_EDGE0 = 3,   /**< the edge from the first corner to the second */
+  IST_PART_EDGE1 = 4,   /**< the edge from the second corner to the third */
+  IST_PART_EDGE2 = 5,   /**< the edge from the third corner to the first */
+  IST_PART_FACE = 6     /**< the inside */
+};
+
+/** Closest points of two triangles, or of parts of them; fixed mesh coordinates. */
+typedef struct IST_MAY_ALIAS ist_near_pair {
+  uint32_t fixed,        /**< triangle of the fixed mesh */
+      moving;            /**< triangle of the moving mesh */
+  double distance;       /**< mesh units; 0 if the triangles intersect */
+  double fixed_point[3], /**< on the fixed triangle */
+      moving_point[3];   /**< on the moving one; a common point if the triangles intersect */
+  double direction[3];   /**< of unit length, from the fixed point to the moving one; 0 if the
+                            triangles intersect, or if the points are the same */
+  int32_t fixed_part,    /**< IST_PART_...: the smallest part that holds the fixed point */
+      moving_part;       /**< the smallest part that holds the moving point */
+} ist_near_pair;
+
+/** The answer of ist_query_near_pairs and ist_query_near_parts. */
+typedef struct ist_near_pairs_result {
+  size_t struct_size;    /**< the size of this struct, bytes */
+  uint64_t pairs;        /**< all pairs found, in the array or not */
+  uint64_t written;      /**< valid elements of the array */
+  uint64_t sphere_tests; /**< tests made, as ist_budget counts them */
+  int32_t truncated;     /**< 1: the array was too short and holds the nearest pairs */
+  int32_t complete;      /**< 0: the search ended early; there may be more pairs */
+  int32_t found;         /**< IST_FOUND_...; only sphere_tests depends on it */
+  int32_t reserved;      /**< zero */
+  double pad;            /**< no pair is farther apart than the margin and this, mesh units */
+  double rotation_error; /**< of the given pose: the largest entry of |R^T R - I| */
+} ist_near_pairs_result;
+
+/** Finds all pairs of triangles within `margin` of each other, mesh units, with their closest
+ * points, sorted by distance, then by fixed and by moving triangle. Triangles that intersect are
+ * among them. `pairs` may be NULL if `capacity` is 0, to count; `budget` as for leaf pairs. Bodies
+ * that are too far apart for float give a result that is not complete. Errors: IST_POSE_INVALID;
+ * IST_TRIANGLES_MISSING; IST_ARGUMENT_INVALID for a margin that is negative, infinite or NaN. Cost:
+ * 0.3 ms for jaws that touch and a margin of 0.06 mm, 0.3 us per near pair. [real time] */
+IST_C_API ist_status ist_query_near_pairs(ist_query* query, const double pose[16], double margin,
+                                          const ist_budget* budget, ist_near_pair* pairs,
+                                          size_t capacity,
+                                          ist_near_pairs_result* result) IST_NOEXCEPT;
+
+/** The most pairs of parts that two triangles have. */
+#define IST_MOST_NEAR_PARTS 15
+
+/** Lists the parts of two triangles, by index, within `margin` of each other, sorted by distance:
+ * each corner above the face of the other triangle, and the closest points of each two edges.
+ * `parts` may be NULL if `capacity` is 0; IST_MOST_NEAR_PARTS is always enough. Errors: as
+ * ist_query_near_pairs; IST_ARGUMENT_INVALID for an index out of range. Cost: 0.5 us. [real time]
+ */
+IST_C_API ist_status ist_query_near_parts(ist_query* query, const double pose[16], uint32_t fixed,
+                                          uint32_t moving, double margin, ist_near_pair* parts,
+                                          size_t capacity,
+                                          ist_near_pairs_result* result) IST_NOEXCEPT;
 
 /** Forgets what earlier poses left behind: next answers are those of a new query. [real time] */
 IST_C_API ist_status ist_query_forget(ist_query* query) IST_NOEXCEPT;

@@ -126,13 +126,20 @@ typedef struct ist_first_contact {
   double narrowest;          /**< the least tolerance that is reached here */
   uint64_t distances;        /**< asked for */
   double rotation_error;     /**< of the given poses, the larger one: as in ist_query_result */
+  double place_fixed[3],     /**< closest points before the contact, fixed mesh coordinates: of the
+                                fixed surface */
+      place_moving[3]; /**< of the moving surface; a common point if they touch at the start */
+  double normal[3];    /**< of unit length, from the fixed to the moving body; 0 if they touch
+                          at the start, or if rounding hides each distance */
+  uint32_t place_triangles[2]; /**< of the fixed and of the moving mesh, that hold the points */
+  int32_t place_known;         /**< 1: the place is known; 0: there was no contact */
+  int32_t reserved;            /**< zero */
 } ist_first_contact;
 
-/** Finds the first contact along a motion. From `lower` to `upper` no point of the moving body goes
- * farther than `tolerance`, mesh units. Of `budget` the tests are distances. The
- * query forgets what earlier poses left. Errors:
- * IST_POSE_INVALID, IST_ARGUMENT_INVALID, IST_CANCELLED. Cost: some 10 to 40 distances for jaws
- * that close. */
+/** Finds the first contact along a motion, and its place. From `lower` to `upper` no point of the
+ * moving body goes farther than `tolerance`, mesh units. Of `budget` the tests are distances. The
+ * query forgets what earlier poses left. Errors: IST_POSE_INVALID, IST_ARGUMENT_INVALID,
+ * IST_CANCELLED. Cost: some 10 to 40 distances for jaws that close. */
 IST_C_API ist_status ist_query_first_contact(ist_query* query, const ist_motion* motion,
                                              double tolerance, const ist_budget* budget,
                                              const ist_progress* progress,
