@@ -86,13 +86,6 @@ bool answered(Call& call, QueryStatus status, const double* pose) {
     case QueryStatus::kNoTriangles:
       call.fail(IST_TRIANGLES_MISSING, "a tree has no triangles: build both trees with them");
       return false;
-    case QueryStatus::kMarginInvalid:
-      call.fail(IST_ARGUMENT_INVALID, "margin is negative, infinite or NaN: pass a length");
-      return false;
-    case QueryStatus::kNoSuchTriangle:
-      call.fail(IST_ARGUMENT_INVALID,
-                "a triangle's index is too large: pass indices of both meshes");
-      return false;
     case QueryStatus::kManifoldMismatch:  // each manifold belongs to its query
     case QueryStatus::kBusy:              // a handle is used by one thread at a time
     case QueryStatus::kNotPrepared:       // of a world
