@@ -32,7 +32,7 @@ CacheOptions coherent_options(const QueryOptions& options) {
 // Returns the bytes that a query with such a plan reserves. Throws kArgumentInvalid for an option
 // out of range.
 std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const SphereTree& moving,
-                       const QueryOptions& options) {
+                       const QueryOptions& options, const QueryRoom& room) {
   if (options.workers != 1 && options.workers != 2) {
     throw Error(ErrorCode::kArgumentInvalid,
                 fmt::format("query option workers is {}: give 1 or 2", options.workers));
@@ -42,14 +42,15 @@ std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const Sp
                 fmt::format("query option front_pairs is {}: {} is the most", options.front_pairs,
                             kMostItems));
   }
-  std::size_t bytes = (options.workers == 2 ? SharedSearch::bytes_for(plan, options.frontier_pairs)
-                                            : Search::bytes_for(plan, options.frontier_pairs)) +
-                      (kWindow + kLeafPairSpare) * sizeof(LeafPair);
+  std::size_t bytes =
+      (options.workers == 2 ? SharedSearch::bytes_for(plan, options.frontier_pairs)
+                            : Search::bytes_for(plan, options.frontier_pairs, room.search_items)) +
+      (kWindow + kLeafPairSpare) * sizeof(LeafPair);
   if (options.front_pairs > 0) {
     bytes += CachedSearch::bytes_for(plan, coherent_options(options));
   }
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    bytes += TriangleSearch::bytes_for(fixed, moving, options.workers);
+    bytes += TriangleSearch::bytes_for(fixed, moving, options.workers, room.cluster_items);
   }
   return bytes;
 }
@@ -73,31 +74,52 @@ DistanceInterval narrowed(const Approach& bodies, const DistanceBounds& bounds, 
 }  // namespace
 
 QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tree,
-                       const QueryOptions& options, const ScopedFloatEnvironment&)
+                       const QueryOptions& options, const ScopedFloatEnvironment&,
+                       const QueryRoom& room)
     : fixed(comparable(fixed_tree, moving_tree)),
       moving(moving_tree),
+      wanted_policy(options.policy),
       policy(policy_of(fixed, moving, options)),
       kernels(select_kernels(options.target)),
       plan(fixed, moving, policy),
-      bytes(bytes_with(plan, fixed, moving, options)) {
+      bytes(bytes_with(plan, fixed, moving, options, room)) {
   if (options.workers == 2) {
     searches.emplace<SharedSearch>(plan, kernels, options.frontier_pairs, options.period);
   } else {
-    searches.emplace<Search>(plan, kernels, options.frontier_pairs);
+    searches.emplace<Search>(plan, kernels, options.frontier_pairs, room.search_items);
   }
   if (options.front_pairs > 0) {
-    cached.emplace(fixed, moving, policy, plan, kernels, coherent_options(options));
+    cached = &own_cache.emplace(fixed, moving, policy, plan, kernels, coherent_options(options));
   }
   window.resize(kWindow + kLeafPairSpare);
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    triangles.emplace(fixed, moving, kernels, WorkerOptions{options.workers, options.period});
+    triangles = &own_triangles.emplace(
+        fixed, moving, kernels, WorkerOptions{options.workers, options.period}, room.cluster_items);
   }
 }
 
 std::size_t QueryState::bytes_for(const SphereTree& fixed, const SphereTree& moving,
-                                  const QueryOptions& options) {
+                                  const QueryOptions& options, const QueryRoom& room) {
   const SearchPlan plan(fixed, moving, policy_of(fixed, moving, options));
-  return bytes_with(plan, fixed, moving, options);
+  return bytes_with(plan, fixed, moving, options, room);
+}
+
+void QueryState::bind(const SphereTree& fixed_tree, const TreeFacts& of_fixed,
+                      const SphereTree& moving_tree, const TreeFacts& of_moving) noexcept {
+  if (&parts_of(fixed_tree) == &parts_of(fixed) && &parts_of(moving_tree) == &parts_of(moving)) {
+    if (triangles != nullptr) triangles->witnesses() = {};
+    return;
+  }
+  fixed = fixed_tree;
+  moving = moving_tree;
+  policy = wanted_policy.value_or(std::min(fixed.tightest(), moving.tightest()));
+  plan.bind(fixed, moving, policy);
+  std::get_if<Search>(&searches)->bind();
+  const bool both = fixed.triangles() != nullptr && moving.triangles() != nullptr;
+  triangles = both && own_triangles ? &*own_triangles : nullptr;
+  if (triangles != nullptr) {
+    triangles->bind(fixed, of_fixed.triangles, moving, of_moving.triangles);
+  }
 }
 
 double QueryState::triangle_error(const Eigen::Isometry3d& pose) const noexcept {

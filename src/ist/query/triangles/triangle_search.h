@@ -20,6 +20,25 @@ struct WorkerOptions {
   std::chrono::nanoseconds period;  ///< as for ResidentWorker::tick
 };
 
+/// Lengths of a mesh, mesh units.
+struct TriangleLengths {
+  /// Measures a tree's triangles; zeros without triangles. Cost: 10 ns a triangle.
+  static TriangleLengths of(const SphereTree& tree);
+
+  double largest_coordinate = 0;  ///< without its sign, of a vertex in use
+  double longest_edge = 0;
+};
+
+/// The triangles that a question found last at a pair of bodies, for the next one.
+struct Witnesses {
+  struct Nearest {
+    TriangleIds ids;
+    double distance;
+  };
+  std::optional<TriangleIds> met;
+  std::optional<Nearest> nearest;
+};
+
 /// Two bodies at a pose, for exact questions.
 struct TrianglePose {
   const Eigen::Isometry3d& rigid;  ///< of mesh coordinates
@@ -35,9 +54,15 @@ struct TrianglePose {
 /// ones alone: they are the same on every target, as those that met need not be.
 class TriangleSearch {
  public:
-  /// Reserves all memory. Both trees must have triangles. Holds references to both.
+  /// Reserves all memory: at least `items` numbers for the search of clusters. Both trees must have
+  /// triangles. Refers to both.
   TriangleSearch(const SphereTree& fixed, const SphereTree& moving, const Kernels& kernels,
-                 const WorkerOptions& options);
+                 const WorkerOptions& options, std::size_t items = 0);
+
+  /// Asks two other trees from now on, and refers to them. Allocates nothing. Preconditions: both
+  /// have triangles, and the search has ClusterSearch::items_for() numbers. It has one worker.
+  void bind(const SphereTree& fixed, const TriangleLengths& of_fixed, const SphereTree& moving,
+            const TriangleLengths& of_moving) noexcept;
 
   /// The end of a search, and its cost.
   struct End {
@@ -66,10 +91,8 @@ class TriangleSearch {
   Nearest nearest(const TrianglePose& pose, double tolerance, const Budget& budget,
                   DistanceInterval& distance) noexcept;
 
-  void forget() noexcept {
-    met_.reset();
-    nearest_.reset();
-  }
+  /// The witnesses. If a search serves several pairs, its owner keeps those of each pair.
+  [[nodiscard]] Witnesses& witnesses() noexcept { return witnesses_; }
 
   /// Returns whether the bodies are so far apart, against their sizes, that float cannot tell their
   /// triangles' distances from each other.
@@ -83,31 +106,26 @@ class TriangleSearch {
   }
   /// Returns the bytes that a search of these trees reserves, with one worker or two.
   [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed, const SphereTree& moving,
-                                             int workers) noexcept;
+                                             int workers, std::size_t items = 0) noexcept;
 
  private:
-  struct Witness {
-    TriangleIds ids;
-    double distance;
-  };
   [[nodiscard]] double radii() const noexcept {
-    return fixed_.bounding_radius() + moving_.bounding_radius();
+    return fixed_->bounding_radius() + moving_->bounding_radius();
   }
   [[nodiscard]] ClusterPose cluster_pose(const TrianglePose& pose) const noexcept;
   [[nodiscard]] bool still_meet(const Meshes& meshes, const Budget& budget) const noexcept;
   template <class Visitor>
   void begin_nearest(BudgetMeter& meter, Visitor& nearest) noexcept;
 
-  const SphereTree &fixed_, &moving_;
-  const TriangleClusters &fixed_clusters_, &moving_clusters_;
+  const SphereTree *fixed_, *moving_;
+  const TriangleClusters *fixed_clusters_, *moving_clusters_;
   const ClusterKernels& kernels_;
   double largest_coordinate_, longest_edge_;
   ClusterSearch search_;
   PairList list_;
   FoundMemory memory_;
   std::optional<SharedPairs> shared_;
-  std::optional<TriangleIds> met_;
-  std::optional<Witness> nearest_;
+  Witnesses witnesses_;
 };
 
 }  // namespace ist
