@@ -10,6 +10,7 @@ namespace ist::capi {
 namespace {
 
 static_assert(IST_MOST_BODIES == kMostBodies);
+static_assert(IST_MOST_THREADS == kMostThreads);
 
 struct WorldObject {
   using Handle = ist_world;
@@ -29,7 +30,7 @@ ist_status status_of_world(const Call& call, QueryStatus status, const double* p
   }
   if (status == QueryStatus::kNotPrepared) {
     return call.fail(IST_NOT_PREPARED,
-                     "the world is not prepared: call ist_world_prepare after the last body");
+                     "the world is not prepared: call ist_world_reserve after the last body");
   }
   return status_of(call, status, pose);
 }
@@ -47,17 +48,14 @@ ist_status read_world_options(const Call& call, const ist_world_options* given,
     if (!query.manifold) options.manifold.points = 0;
   }
   options.reach = known.reach;
-  if (known.most_near > 0) options.most_near = known.most_near;
+  if (known.pair_caches > 0) options.pair_caches = known.pair_caches;
+  if (known.threads < 0) {
+    return call.fail(IST_ARGUMENT_INVALID, "options->threads is {}: pass 1 to {}", known.threads,
+                     IST_MOST_THREADS);
+  }
+  if (known.threads > 0) options.threads = static_cast<std::size_t>(known.threads);
   if (known.max_memory > 0) options.max_memory = known.max_memory;
   return IST_OK;
-}
-
-// The pairs of a caller; empty for all.
-std::optional<std::vector<BodyPair>> pairs_of(const ist_body_pair* pairs, std::size_t count) {
-  if (pairs == nullptr) return std::nullopt;
-  std::vector<BodyPair> made;
-  for (const auto& [a, b] : std::span(pairs, count)) made.push_back({a, b});
-  return made;
 }
 
 // Returns the status of a pair. It is no error of the call.
@@ -189,36 +187,24 @@ ist_status ist_world_ignore(ist_world* world, uint32_t a, uint32_t b) IST_NOEXCE
   });
 }
 
-ist_status ist_world_bytes_needed(ist_world* world, const ist_body_pair* pairs, size_t count,
+ist_status ist_world_bytes_needed(ist_world* world, uint64_t near_pairs,
                                   uint64_t* bytes) IST_NOEXCEPT {
   return guarded(__func__, [&](const Call& call) -> ist_status {
     if (const ist_status missing = call.need({{"bytes", bytes}})) return missing;
     *bytes = 0;
-    if (const ist_status missing = call.need_array("pairs", pairs, count)) return missing;
     const Held<WorldObject> held(call, "world", world);
     if (held.status() != IST_OK) return held.status();
-    const auto some = pairs_of(pairs, count);
-    *bytes = some ? held->world.bytes_needed(*some) : held->world.bytes_needed();
+    *bytes = held->world.bytes_needed(near_pairs);
     return IST_OK;
   });
 }
 
-ist_status ist_world_prepare(ist_world* world, const ist_body_pair* pairs, size_t count,
-                             const ist_progress* progress) IST_NOEXCEPT {
+ist_status ist_world_reserve(ist_world* world, uint64_t near_pairs) IST_NOEXCEPT {
   return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need_array("pairs", pairs, count)) return missing;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
     const Held<WorldObject> held(call, "world", world);
     if (held.status() != IST_OK) return held.status();
-    const auto some = pairs_of(pairs, count);
-    bool prepared = false;
-    followed(follower, [&](const ist::Proceed& proceed) {
-      held->world.prepare(some, proceed);
-      prepared = true;
-    });
-    // A caller who says stop after the last pair is too late.
-    return prepared ? IST_OK : cancelled(call);
+    held->world.reserve(near_pairs);
+    return IST_OK;
   });
 }
 
@@ -311,7 +297,7 @@ ist_status ist_world_get_contacts(ist_world* world, uint32_t a, uint32_t b, ist_
     if (manifold == nullptr) {
       return call.fail(IST_NOT_PREPARED,
                        "the last ist_world_ask for IST_ASK_CONTACTS did not ask bodies {} and {}: "
-                       "prepare the pair, and look at its status",
+                       "look at the pair's status, and reserve for more near pairs",
                        a, b);
     }
     const std::span<const ist::Contact> made = manifold->points();

@@ -105,21 +105,22 @@ std::size_t QueryState::bytes_for(const SphereTree& fixed, const SphereTree& mov
 }
 
 void QueryState::bind(const SphereTree& fixed_tree, const TreeFacts& of_fixed,
-                      const SphereTree& moving_tree, const TreeFacts& of_moving) noexcept {
-  if (&parts_of(fixed_tree) == &parts_of(fixed) && &parts_of(moving_tree) == &parts_of(moving)) {
-    if (triangles != nullptr) triangles->witnesses() = {};
-    return;
+                      const SphereTree& moving_tree, const TreeFacts& of_moving,
+                      bool of_leaves) noexcept {
+  if (&parts_of(fixed_tree) != &parts_of(fixed) || &parts_of(moving_tree) != &parts_of(moving)) {
+    fixed = fixed_tree;
+    moving = moving_tree;
+    policy = wanted_policy.value_or(std::min(fixed.tightest(), moving.tightest()));
+    has_plan = false;
+    const bool both = fixed.triangles() != nullptr && moving.triangles() != nullptr;
+    triangles = both && own_triangles ? &*own_triangles : nullptr;
+    if (both) triangles->bind(fixed, of_fixed.triangles, moving, of_moving.triangles);
   }
-  fixed = fixed_tree;
-  moving = moving_tree;
-  policy = wanted_policy.value_or(std::min(fixed.tightest(), moving.tightest()));
-  plan.bind(fixed, moving, policy);
+  if (triangles != nullptr) triangles->witnesses() = {};
+  if (has_plan || !(of_leaves || triangles == nullptr)) return;
+  plan.bind(fixed, of_fixed.shape, moving, of_moving.shape, policy);
   std::get_if<Search>(&searches)->bind();
-  const bool both = fixed.triangles() != nullptr && moving.triangles() != nullptr;
-  triangles = both && own_triangles ? &*own_triangles : nullptr;
-  if (triangles != nullptr) {
-    triangles->bind(fixed, of_fixed.triangles, moving, of_moving.triangles);
-  }
+  has_plan = true;
 }
 
 double QueryState::triangle_error(const Eigen::Isometry3d& pose) const noexcept {

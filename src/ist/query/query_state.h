@@ -56,8 +56,10 @@ struct QueryState {
 
   /// Asks two other trees from now on, without what earlier questions left. Allocates nothing.
   /// Preconditions: the query has one worker, no pair cache of its own, and room for the trees.
+  ///
+  /// @param of_leaves whether the next question may search leaves: else binding takes less time
   void bind(const SphereTree& fixed_tree, const TreeFacts& of_fixed, const SphereTree& moving_tree,
-            const TreeFacts& of_moving) noexcept;
+            const TreeFacts& of_moving, bool of_leaves) noexcept;
 
   /// Returns the bytes that the memory of a query takes. Throws the same errors as the constructor.
   [[nodiscard]] IST_LOOP_API static std::size_t bytes_for(const SphereTree& fixed,
@@ -117,6 +119,7 @@ struct QueryState {
   SpherePolicy policy;
   const Kernels& kernels;
   SearchPlan plan;
+  bool has_plan = true;  // of these trees
   std::size_t bytes;
   std::variant<std::monostate, Search, SharedSearch> searches;  // made after the plan it refers to
   std::optional<CachedSearch> own_cache;

@@ -131,16 +131,15 @@ SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, Sphere
   fixed_implicit_.reserve(TreeShape::kMostLevels);
   moving_implicit_.reserve(TreeShape::kMostLevels);
   steps_.reserve(kMostSteps);
-  make(fixed, moving, policy, last);
+  make(fixed, TreeShape(fixed), moving, TreeShape(moving), policy, last);
 }
 
-void SearchPlan::make(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
-                      SearchLevels last) noexcept {
+void SearchPlan::make(const SphereTree& fixed, const TreeShape& of_fixed, const SphereTree& moving,
+                      const TreeShape& of_moving, SpherePolicy policy, SearchLevels last) noexcept {
   make_implicit_levels(parts_of(fixed), policy, fixed_implicit_);
   make_implicit_levels(parts_of(moving), policy, moving_implicit_);
   steps_.clear();
   sizes_.count = 0;
-  const TreeShape of_fixed(fixed), of_moving(moving);
   walk(of_fixed, of_moving, last, [&](int a, int b, bool open_a, bool open_b, const Size& size) {
     SearchStep step{read_children(fixed, policy, a, fixed_implicit_),
                     read_children(moving, policy, b, moving_implicit_),

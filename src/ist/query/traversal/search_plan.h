@@ -60,8 +60,9 @@ class SearchPlan {
   static void require_addresses(const SphereTree& tree, std::string_view body);
   /// Makes the steps for two other trees, down to the leaves. Allocates nothing. Precondition: both
   /// trees fit the constructor.
-  void bind(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy) noexcept {
-    make(fixed, moving, policy, {});
+  void bind(const SphereTree& fixed, const TreeShape& of_fixed, const SphereTree& moving,
+            const TreeShape& of_moving, SpherePolicy policy) noexcept {
+    make(fixed, of_fixed, moving, of_moving, policy, {});
   }
 
   /// The sizes of a step.
@@ -94,8 +95,8 @@ class SearchPlan {
   void resolve(std::span<LeafPair> leaf_pairs) const noexcept;
 
  private:
-  void make(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
-            SearchLevels last) noexcept;
+  void make(const SphereTree& fixed, const TreeShape& of_fixed, const SphereTree& moving,
+            const TreeShape& of_moving, SpherePolicy policy, SearchLevels last) noexcept;
 
   std::vector<ImplicitLevel> fixed_implicit_, moving_implicit_;  // by level; empty with blocks
   std::vector<SearchStep> steps_;
