@@ -297,7 +297,7 @@ TEST_F(CWorld, TellsWhatIsMisused) {
   for (const char* const each : {"first", "second"}) {
     ASSERT_EQ(name(ist_world_add(none, tree_, nullptr, each, &body)), "ok");
   }
-  expect(ist_world_reserve(none, IST_ALL_PAIRS), "memory-limit", "1 near pairs");
+  expect(ist_world_reserve(none, IST_ALL_PAIRS), "memory-limit", "1 near pair");
   EXPECT_EQ(name(ist_world_free(none)), "ok");
 }
 

@@ -14,6 +14,7 @@
 #include "cli/common_options.h"
 #include "cli/load_bodies.h"
 #include "cli/terminal.h"
+#include "ist/base/counted.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
@@ -40,9 +41,8 @@ void take_frame(const std::string& name, const std::filesystem::path& file, Tria
   if (name.empty()) return;
   const PatientFrame frame = *patient_frame(name);
   refuse_if(contradict(frame, mesh.frame), "--frame",
-            fmt::format("{} says that its frame is {}: leave the option out, or turn the mesh by "
-                        "--to-frame {}",
-                        file.string(), to_string(mesh.frame), name));
+            "{} says that its frame is {}: leave the option out, or turn the mesh by --to-frame {}",
+            file.string(), to_string(mesh.frame), name);
   mesh.frame = frame;
 }
 
@@ -54,20 +54,19 @@ void run(BuildArguments options) {
   refuse_if(!names("surface"), "--classes",
             "surface voxels are always made: give surface,proximity");
   options.build.proximity = names("proximity");
-  refuse_to_overwrite(options.output, {options.mesh});
+  check_output(options.output, {options.mesh});
   options.build.source = source_of(options.mesh);
   options.build.source.unit = length_unit(options.unit).value_or(LengthUnit::kUnknown);
   options.build.keep_triangles = !options.no_triangles;
   options.build.frame = patient_frame(options.to_frame).value_or(PatientFrame::kUnknown);
   CheckedMesh checked = load_mesh(options.mesh);
   take_frame(options.frame, options.mesh, checked.mesh);
-  refuse_if(
-      contradict(options.build.source.unit, checked.mesh.unit), "--unit",
-      fmt::format("{} says that its unit is {}: leave the option out, or, if the file is wrong, "
-                  "convert it to STL, PLY or OBJ, which say no unit",
-                  options.mesh.string(), to_string(checked.mesh.unit)));
+  refuse_if(contradict(options.build.source.unit, checked.mesh.unit), "--unit",
+            "{} says that its unit is {}: leave the option out, or, if the file is wrong, convert "
+            "it to STL, PLY or OBJ, which say no unit",
+            options.mesh.string(), to_string(checked.mesh.unit));
   refuse_if(!options.to_frame.empty() && checked.mesh.frame == PatientFrame::kUnknown, "--to-frame",
-            fmt::format("{} does not say its frame: tell it by --frame", options.mesh.string()));
+            "{} does not say its frame: tell it by --frame", options.mesh.string());
   if (checked.has_border) {
     fmt::print(stderr, "note: {}\n", open_surfaces({options.mesh.string()}));
   }
@@ -113,9 +112,9 @@ void run(BuildArguments options) {
     print_json(line);
     return;
   }
-  fmt::print("{}: {} voxels, {} nodes, depth {}, {:.1f} MB\n", options.output.string(),
-             octree.leaf_count(), octree.node_count(), octree.depth(),
-             static_cast<double>(bytes) / 1e6);
+  fmt::print("{}: {}, {}, depth {}, {:.1f} MB\n", options.output.string(),
+             counted(octree.leaf_count(), "voxel"), counted(octree.node_count(), "node"),
+             octree.depth(), static_cast<double>(bytes) / 1e6);
   if (parts_of(tree).proximity) {
     fmt::print("proximity voxels: {}\n", parts_of(tree).proximity->octree.leaf_count());
   }
@@ -129,14 +128,10 @@ void run(BuildArguments options) {
 void add_build(CLI::App& app) {
   CLI::App* command = app.add_subcommand("build", "Make a tree from a mesh, and save it");
   const auto options = std::make_shared<BuildArguments>();
-  command
-      ->add_option("MESH", options->mesh,
-                   fmt::format("{} file; no unit is converted", kMeshFormats))
-      ->type_name("FILE")
+  add_file(*command, "MESH", options->mesh,
+           fmt::format("{} file; no unit is converted", kMeshFormats))
       ->required();
-  command->add_option("-o,--output", options->output, "the tree file to write, .ist")
-      ->type_name("FILE")
-      ->required();
+  add_file(*command, "-o,--output", options->output, "the tree file to write, .ist")->required();
   command->add_option("--voxel-size", options->voxel_size,
                       "edge of a voxel, in mesh units; by default 1/500 of the largest extent");
   command

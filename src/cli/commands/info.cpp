@@ -5,7 +5,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
 
 #include "answers/body_json.h"
 #include "answers/extents.h"
@@ -14,6 +13,7 @@
 #include "cli/common_options.h"
 #include "cli/load_bodies.h"
 #include "cli/terminal.h"
+#include "ist/base/counted.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/mesh_source.h"
@@ -54,9 +54,9 @@ void print_topology(const MeshReport& report, LengthUnit unit) {
   }
   fmt::print("\n");
   if (report.self_intersections == 0) return;
-  fmt::print("{}{} pair{} of triangles intersect{}, first:\n",
-             report.self_intersections_complete ? "" : "at least ", report.self_intersections,
-             report.self_intersections == 1 ? "" : "s", report.self_intersections == 1 ? "s" : "");
+  fmt::print("{}{}, first:\n", report.self_intersections_complete ? "" : "at least ",
+             counted(report.self_intersections, "pair of triangles intersects",
+                     "pairs of triangles intersect"));
   for (const SelfIntersection& one : report.first_self_intersections) {
     fmt::print("  triangles {} and {} near ({:g}, {:g}, {:g})\n", one.triangles[0],
                one.triangles[1], one.near[0], one.near[1], one.near[2]);
@@ -91,9 +91,9 @@ void print_levels(const SphereTree& tree, const std::vector<LevelStatistics>& le
 // Prints for people the counts, size, topology and box of a mesh, and its warnings to stderr.
 void print_mesh(const std::filesystem::path& file, const MeshReport& report,
                 const TriangleMesh& mesh) {
-  fmt::print("{}: a mesh of {} triangles and {} vertices, {} component{}\n", file.string(),
-             report.triangles, report.vertices, report.components,
-             report.components == 1 ? "" : "s");
+  fmt::print("{}: a mesh of {} and {}, {}\n", file.string(), counted(report.triangles, "triangle"),
+             counted(report.vertices, "vertex", "vertices"),
+             counted(report.components, "component"));
   print_extent({report.box_min, report.box_max}, mesh.unit);
   print_frame(mesh.frame);
   print_topology(report, mesh.unit);
@@ -105,17 +105,19 @@ void print_mesh(const std::filesystem::path& file, const MeshReport& report,
 void print_tree(const std::filesystem::path& file, const SphereTree& tree,
                 const std::optional<MeshReport>& triangles,
                 const std::vector<LevelStatistics>& levels) {
-  fmt::print("{}: a tree of {} voxels of edge {}, {} nodes, {:.1f} MB in memory\n", file.string(),
-             tree.leaf_count(), tree.voxel_size(), parts_of(tree).octree.node_count(),
+  fmt::print("{}: a tree of {} of edge {}, {}, {:.1f} MB in memory\n", file.string(),
+             counted(tree.leaf_count(), "voxel"), tree.voxel_size(),
+             counted(parts_of(tree).octree.node_count(), "node"),
              static_cast<double>(tree.bytes()) / 1e6);
   print_source(tree.source());
   print_extent(box_of(tree), tree.source().unit);
   print_frame(tree.frame());
   if (triangles) print_topology(*triangles, tree.source().unit);
-  fmt::print("orientation {}, {} triangles kept, {} proximity voxels\n\n",
+  fmt::print("orientation {}, {} kept, {}\n\n",
              tree.orientation() == Orientation::kOutward ? "outward" : "assumed",
-             triangles ? triangles->triangles : 0,
-             parts_of(tree).proximity ? parts_of(tree).proximity->octree.leaf_count() : 0);
+             counted(triangles ? triangles->triangles : 0, "triangle"),
+             counted(parts_of(tree).proximity ? parts_of(tree).proximity->octree.leaf_count() : 0,
+                     "proximity voxel"));
   print_levels(tree, levels);
 }
 
@@ -150,8 +152,7 @@ void add_info(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("info", "Show the contents of a mesh or a tree, level by level");
   const auto options = std::make_shared<InfoArguments>();
-  command->add_option("FILE", options->file, fmt::format("{} mesh, or tree", kMeshFormats))
-      ->type_name("FILE")
+  add_file(*command, "FILE", options->file, fmt::format("{} mesh, or tree", kMeshFormats))
       ->required();
   command->add_flag("--json", options->json, "print one JSON object");
   add_example(*command, "Example: ist info jaw.ist");

@@ -1,10 +1,7 @@
 #include "ist/query/query_state.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 #include "ist/query/query_rules.h"
 #include "ist/query/relative_pose.h"
 #include "ist/query/traversal/search_pose.h"
@@ -29,18 +26,23 @@ CacheOptions coherent_options(const QueryOptions& options) {
   return {options.frontier_pairs, options.front_pairs, options.workers, options.period};
 }
 
+TriangleOptions triangle_options(const QueryOptions& options, const QueryRoom& room) {
+  return {options.workers, options.period, options.near_pairs, room.cluster_items};
+}
+
 // Returns the bytes that a query with such a plan reserves. Throws kArgumentInvalid for an option
 // out of range.
 std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const SphereTree& moving,
                        const QueryOptions& options, const QueryRoom& room) {
   if (options.workers != 1 && options.workers != 2) {
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("query option workers is {}: give 1 or 2", options.workers));
+    throw_error(ErrorCode::kArgumentInvalid, "query option workers is {}: give 1 or 2",
+                options.workers);
   }
-  if (options.front_pairs > kMostItems) {
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("query option front_pairs is {}: {} is the most", options.front_pairs,
-                            kMostItems));
+  for (const auto& [name, pairs] :
+       {std::pair{"front_pairs", options.front_pairs}, {"near_pairs", options.near_pairs}}) {
+    if (pairs <= kMostItems) continue;
+    throw_error(ErrorCode::kArgumentInvalid, "query option {} is {}: {} is the most", name, pairs,
+                kMostItems);
   }
   std::size_t bytes =
       (options.workers == 2 ? SharedSearch::bytes_for(plan, options.frontier_pairs)
@@ -50,7 +52,7 @@ std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const Sp
     bytes += CachedSearch::bytes_for(plan, coherent_options(options));
   }
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    bytes += TriangleSearch::bytes_for(fixed, moving, options.workers, room.cluster_items);
+    bytes += TriangleSearch::bytes_for(fixed, moving, triangle_options(options, room));
   }
   return bytes;
 }
@@ -93,8 +95,7 @@ QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tr
   }
   window.resize(kWindow + kLeafPairSpare);
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    triangles = &own_triangles.emplace(
-        fixed, moving, kernels, WorkerOptions{options.workers, options.period}, room.cluster_items);
+    triangles = &own_triangles.emplace(fixed, moving, kernels, triangle_options(options, room));
   }
 }
 

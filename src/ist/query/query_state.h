@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -47,6 +48,11 @@ struct QueryRoom {
   std::size_t search_items = 0;   ///< Search::items_for()
   std::size_t cluster_items = 0;  ///< ClusterSearch::items_for()
 };
+
+/// Returns whether a length may be the margin of a query.
+[[nodiscard]] inline bool is_margin(double margin) noexcept {
+  return margin >= 0 && margin < std::numeric_limits<double>::infinity();
+}
 
 /// The memory of a Query, and the steps that its verbs share.
 struct QueryState {

@@ -1,15 +1,13 @@
 #include "ist/tree/sphere_tree.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "ist/base/assert.h"
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/ordered_vector.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/components.h"
 #include "ist/tree/mesh_source.h"
 #include "ist/tree/saved_spheres.h"
@@ -125,11 +123,10 @@ SpherePolicy SphereTree::tightest() const noexcept {
 
 void SphereTree::require(SpherePolicy policy, std::string_view body) const {
   if (has(policy)) return;
-  throw Error(
-      ErrorCode::kPolicyMissing,
-      fmt::format("{}: the tree holds no {} spheres: build it with --spheres {}, or ask for "
-                  "simple or table",
-                  body, to_string(policy), to_string(policy)));
+  throw_error(ErrorCode::kPolicyMissing,
+              "{}: the tree holds no {} spheres: build it with --spheres {}, or ask for "
+              "simple or table",
+              body, to_string(policy), to_string(policy));
 }
 
 double SphereTree::largest_leaf_radius(SpherePolicy policy) const noexcept {

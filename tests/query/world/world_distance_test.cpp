@@ -4,6 +4,7 @@
 #include <chrono>
 #include <limits>
 
+#include "ist/mesh/nearest_point.h"
 #include "ist/tree/tree_parts.h"
 #include "query/test_clocks.h"
 #include "query/triangles/mesh_distance.h"
@@ -54,6 +55,16 @@ TEST(WorldDistance, HoldsTheLeastOfAllPairs) {
       ASSERT_TRUE(found.nearest);
       EXPECT_LE(distance_of(world, bodies, *found.nearest), found.distance.upper + kRounding);
       for (const WorldPair& pair : found.pairs) {
+        if (pair.nearest) {  // the points are in the world, as far apart as the triangles
+          const NearPair& at = *pair.nearest;
+          EXPECT_NEAR((at.moving_point - at.fixed_point).norm(), at.distance, kRounding);
+          const Eigen::Vector3d p = bodies[pair.bodies.b].pose.inverse() * at.moving_point;
+          const TriangleMesh& mesh = parts_of(bodies[pair.bodies.b].tree).triangles->mesh;
+          const Triangle& t = mesh.triangles[at.triangles.moving];
+          const NearestPoint on_it = nearest_on_triangle(
+              {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]}, p);
+          EXPECT_LT((on_it.point - p).norm(), kRounding);
+        }
         EXPECT_LE(outside(pair.distance, distance_of(world, bodies, pair.bodies)), kRounding);
         EXPECT_LE(outside(pair.roots, distance_of(world, bodies, pair.bodies)), kRounding);
       }

@@ -1,12 +1,10 @@
 #include "ist/query/traversal/search_plan.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "ist/base/assert.h"
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 #include "ist/query/query_rules.h"
 #include "ist/tree/tree_parts.h"
 #include "simd/lanes.h"
@@ -117,9 +115,9 @@ SearchPlan::Sizes SearchPlan::sizes_of(const TreeShape& fixed, const TreeShape& 
 
 void SearchPlan::require_addresses(const SphereTree& tree, std::string_view body) {
   if (tree.depth() == 0 || parts_of(tree).octree.node_count(1) < kMostParents) return;
-  throw Error(ErrorCode::kMemoryLimit,
-              fmt::format("{}: a tree of {} leaves is too large to be searched: use larger voxels",
-                          body, tree.leaf_count()));
+  throw_error(ErrorCode::kMemoryLimit,
+              "{}: a tree of {} leaves is too large to be searched: use larger voxels", body,
+              tree.leaf_count());
 }
 
 SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,

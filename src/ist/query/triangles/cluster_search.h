@@ -65,12 +65,15 @@ class ClusterSearch {
   [[nodiscard]] const ClusterStep& step() const noexcept { return step_; }
   /// Returns a lower bound of the distance of all nodes that an ended search did not come to.
   [[nodiscard]] double nearest_left() const noexcept { return nearest_left_; }
-  /// Returns the bytes that a search with so many numbers reserves.
-  [[nodiscard]] static std::size_t bytes_for(std::size_t items) noexcept {
-    return items * sizeof(std::uint32_t) + kMostSteps * sizeof(Step);
+  /// Returns the bytes that a search of these trees with at least so many numbers reserves.
+  [[nodiscard]] static std::size_t bytes_for(const TriangleClusters& fixed,
+                                             const TriangleClusters& moving,
+                                             std::size_t items = 0) noexcept {
+    return std::max(items, items_for(fixed, moving.root_level())) * sizeof(std::uint32_t) +
+           kMostSteps * sizeof(Step);
   }
 
- private:
+ protected:
   // The lengths of a step's lists.
   struct Lengths {
     std::size_t bits, near, deeper;
@@ -112,6 +115,9 @@ class ClusterSearch {
   bool find_children(Step& step, int level, LaneNodes parents, float reach, BudgetMeter& meter,
                      LaneNodes& found) const noexcept;
   static Groups by_lanes(LaneNodes pairs, bool most_first) noexcept;
+  // Begins above the moving tree's root, and finds the fixed nodes of the root's level, or of the
+  // fixed root's if that is lower.
+  bool descend_to_root(float reach, BudgetMeter& meter, int& level, LaneNodes& nodes) noexcept;
   void note_untested(const Step& step, int fixed_level, LaneNodes pairs) noexcept;
 
   const TriangleClusters *fixed_ = nullptr, *moving_ = nullptr;
@@ -127,21 +133,9 @@ template <class Visitor>
 bool ClusterSearch::run(BudgetMeter& meter, Visitor& visitor) noexcept {
   measures_rest_ = Visitor::kMeasuresRest;
   nearest_left_ = std::numeric_limits<double>::infinity();
-  // Above its root the moving tree has a node of one child.
-  Step& top = step_at(moving_->root_level() + 1);
-  kernels_.turn_nodes(moving_->bounds(moving_->root_level())[0], step_.pose, top.turned);
-  int level = fixed_->root_level();
-  LaneNodes nodes{top.near, 1};
-  top.near[0] = 0;
-  while (level > moving_->root_level()) {
-    LaneNodes children{};
-    if (!find_children(top, --level, nodes, visitor.reach(), meter, children)) {
-      note_untested(top, level + 1, nodes);
-      return false;
-    }
-    std::copy_n(children.codes, children.count, top.near);
-    nodes.count = children.count;
-  }
+  int level = 0;
+  LaneNodes nodes{};
+  if (!descend_to_root(visitor.reach(), meter, level, nodes)) return false;
   return descend(moving_->root_level(), 0, level, nodes, meter, visitor);
 }
 

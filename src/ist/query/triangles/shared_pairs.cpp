@@ -88,10 +88,9 @@ void SharedPairs::help(std::size_t chunk, Part& part) noexcept {
 
 std::size_t SharedPairs::bytes_for(const TriangleClusters& fixed,
                                    const TriangleClusters& moving) noexcept {
-  return ClusterSearch::bytes_for(ClusterSearch::items_for(fixed, moving.root_level())) +
-         FoundMemory::bytes() + kFoundPairs * sizeof(TrianglePair) +
-         (kMostNodes + kClusterWidth) * sizeof(std::uint32_t) + kMostTasks * sizeof(ClusterTask) +
-         SharedWork<Part>::bytes_for(kMostChunks);
+  return ClusterSearch::bytes_for(fixed, moving) + FoundMemory::bytes() +
+         kFoundPairs * sizeof(TrianglePair) + (kMostNodes + kClusterWidth) * sizeof(std::uint32_t) +
+         kMostTasks * sizeof(ClusterTask) + SharedWork<Part>::bytes_for(kMostChunks);
 }
 
 }  // namespace ist

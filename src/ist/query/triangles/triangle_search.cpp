@@ -9,7 +9,6 @@
 #include "ist/mesh/clusters/triangle_clusters.h"
 #include "ist/query/traversal/budget_meter.h"
 #include "ist/query/triangles/triangle_distance.h"
-#include "ist/query/triangles/triangle_visitors.h"
 #include "ist/tree/tree_parts.h"
 #include "simd/triangles/cluster_step.h"
 
@@ -219,14 +218,17 @@ TriangleLengths TriangleLengths::of(const SphereTree& tree) {
 }
 
 TriangleSearch::TriangleSearch(const SphereTree& fixed, const SphereTree& moving,
-                               const Kernels& kernels, const WorkerOptions& options,
-                               std::size_t items)
+                               const Kernels& kernels, const TriangleOptions& options)
     : kernels_(kernels.clusters),
-      search_(clusters_of(fixed), clusters_of(moving), kernels_, items),
+      search_(clusters_of(fixed), clusters_of(moving), kernels_, options.items),
       list_(kSorted) {
   bind(fixed, TriangleLengths::of(fixed), moving, TriangleLengths::of(moving));
   if (options.workers == 2) {
     shared_.emplace(*fixed_clusters_, *moving_clusters_, kernels_, options.period);
+  }
+  if (options.near_pairs > 0) {
+    near_.emplace(*fixed.triangles(), *moving.triangles(), *fixed_clusters_, *moving_clusters_,
+                  kernels_, options.near_pairs);
   }
 }
 
@@ -309,9 +311,13 @@ TriangleSearch::Nearest TriangleSearch::nearest(const TrianglePose& pose, double
                                                 const Budget& budget,
                                                 DistanceInterval& distance) noexcept {
   const Meshes meshes{*fixed_->triangles(), {*moving_->triangles(), pose.rigid}};
+  const auto closest = [&](TriangleIds ids) {
+    return closest_points(corners_of(meshes.fixed, ids.fixed), meshes.moving[ids.moving],
+                          {ids.fixed, ids.moving});
+  };
   if (still_meet(meshes, budget)) {
     distance = {0, 0};
-    return {{true, 1}, 0};
+    return {{true, 1}, 0, closest(*witnesses_.met)};
   }
   search_.begin(cluster_pose(pose));
   NearestPair nearest({search_.step(), kernels_, meshes, memory_, budget}, tolerance, longest_edge_,
@@ -339,7 +345,47 @@ TriangleSearch::Nearest TriangleSearch::nearest(const TrianglePose& pose, double
   if (!complete) lower = std::min(lower, search_.nearest_left());
   const double upper = nearest.ids() ? nearest.distance() + error : distance.upper;
   distance = {std::max(distance.lower, lower), std::min(distance.upper, upper)};
-  return {{complete, meter.spent() - kRootTests}, error};
+  std::optional<NearPair> pair;
+  if (nearest.ids()) pair = closest(*nearest.ids());
+  return {{complete, meter.spent() - kRootTests}, error, pair};
+}
+
+ClusterPose TriangleSearch::cluster_pose(const Eigen::Isometry3d& rigid) const noexcept {
+  return cluster_pose(
+      {rigid, *relative_pose(rigid, parts_of(*fixed_).lattice, parts_of(*moving_).lattice)});
+}
+
+TriangleSearch::Near TriangleSearch::near(const TrianglePose& pose, double enough,
+                                          const Budget& budget, NearList& list) noexcept {
+  const Meshes meshes{*fixed_->triangles(), {*moving_->triangles(), pose.rigid}};
+  // No two points are farther apart: a float holds it.
+  const double farthest = 2 * (radii() + pose.relative.translation.cwiseAbs().maxCoeff());
+  enough = std::min(enough, farthest);
+  const NearCache::Need need{pose.rigid, enough, distance_error(enough) + moved_error(pose.rigid)};
+  const bool carries = near_ && !budget.has_tests();
+  search_.begin(cluster_pose(pose));
+  NearDecision decision({search_.step(), kernels_, meshes, memory_, budget}, *moving_->triangles(),
+                        plain_move(pose.rigid), enough, list);
+  if (carries && near_->find(need)) {
+    std::uint64_t tests = 0;
+    const bool complete = near_->answer(decision, tests);
+    list.finish();
+    if (!budget.is_past()) prepare_near(need, 0);
+    return {{complete, tests}, true};
+  }
+  NearbyPairs near(decision);
+  BudgetMeter meter(budget, kRootTests);
+  bool complete = search_.run(meter, near);
+  complete = near.finish() && complete;
+  list.finish();
+  const std::uint64_t tests = meter.spent() - kRootTests;
+  if (carries && complete && !budget.is_past()) prepare_near(need, tests);
+  return {{complete, tests}, false};
+}
+
+void TriangleSearch::prepare_near(const NearCache::Need& need, std::uint64_t tests) noexcept {
+  near_->prepare(need, tests, memory_,
+                 [&](const Eigen::Isometry3d& centre) { return cluster_pose(centre); });
 }
 
 // Returns whether the triangles that met last still do. A limit of tests does not ask.
@@ -363,11 +409,13 @@ void TriangleSearch::begin_nearest(BudgetMeter& meter, Visitor& nearest) noexcep
 }
 
 std::size_t TriangleSearch::bytes_for(const SphereTree& fixed, const SphereTree& moving,
-                                      int workers, std::size_t items) noexcept {
+                                      const TriangleOptions& options) noexcept {
   const TriangleClusters &of_fixed = clusters_of(fixed), &of_moving = clusters_of(moving);
-  items = std::max(items, ClusterSearch::items_for(of_fixed, of_moving.root_level()));
-  return ClusterSearch::bytes_for(items) + kSorted * sizeof(TrianglePair) + FoundMemory::bytes() +
-         (workers == 2 ? SharedPairs::bytes_for(of_fixed, of_moving) : 0);
+  return ClusterSearch::bytes_for(of_fixed, of_moving, options.items) +
+         kSorted * sizeof(TrianglePair) + FoundMemory::bytes() +
+         (options.workers == 2 ? SharedPairs::bytes_for(of_fixed, of_moving) : 0) +
+         (options.near_pairs > 0 ? NearCache::bytes_for(of_fixed, of_moving, options.near_pairs)
+                                 : 0);
 }
 
 }  // namespace ist

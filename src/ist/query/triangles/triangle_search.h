@@ -7,6 +7,8 @@
 
 #include "ist/query/relative_pose.h"
 #include "ist/query/triangles/cluster_search.h"
+#include "ist/query/triangles/near_cache.h"
+#include "ist/query/triangles/near_visitor.h"
 #include "ist/query/triangles/pair_list.h"
 #include "ist/query/triangles/shared_pairs.h"
 #include "ist/query/triangles/triangle_visitors.h"
@@ -15,9 +17,11 @@
 
 namespace ist {
 
-struct WorkerOptions {
+struct TriangleOptions {
   int workers;                      ///< 1 or 2
   std::chrono::nanoseconds period;  ///< as for ResidentWorker::tick
+  std::size_t near_pairs = 0;       ///< room of a NearCache; 0: there is none
+  std::size_t items = 0;            ///< least ClusterSearch::items_for(), to be bound later
 };
 
 /// Lengths of a mesh, mesh units.
@@ -54,13 +58,13 @@ struct TrianglePose {
 /// ones alone: they are the same on every target, as those that met need not be.
 class TriangleSearch {
  public:
-  /// Reserves all memory: at least `items` numbers for the search of clusters. Both trees must have
-  /// triangles. Refers to both.
+  /// Reserves all memory. Both trees must have triangles. Refers to both.
   TriangleSearch(const SphereTree& fixed, const SphereTree& moving, const Kernels& kernels,
-                 const WorkerOptions& options, std::size_t items = 0);
+                 const TriangleOptions& options);
 
   /// Asks two other trees from now on, and refers to them. Allocates nothing. Preconditions: both
-  /// have triangles, and the search has ClusterSearch::items_for() numbers. It has one worker.
+  /// have triangles, and the search has ClusterSearch::items_for() numbers. It has one worker, and
+  /// no NearCache.
   void bind(const SphereTree& fixed, const TriangleLengths& of_fixed, const SphereTree& moving,
             const TriangleLengths& of_moving) noexcept;
 
@@ -73,7 +77,8 @@ class TriangleSearch {
     bool found;
   };
   struct Nearest : End {
-    double error;  ///< of a distance of triangles, mesh units
+    double error;                  ///< of a distance of triangles, mesh units
+    std::optional<NearPair> pair;  ///< the nearest that was found
   };
 
   /// Finds all pairs of triangles that intersect; the first of them go into `out`. pair_count()
@@ -94,6 +99,22 @@ class TriangleSearch {
   /// The witnesses. If a search serves several pairs, its owner keeps those of each pair.
   [[nodiscard]] Witnesses& witnesses() noexcept { return witnesses_; }
 
+  struct Near : End {
+    bool kept;  ///< a list from earlier poses answered
+  };
+  /// Lists all pairs of triangles no farther apart than `enough` in double, and no others.
+  Near near(const TrianglePose& pose, double enough, const Budget& budget, NearList& list) noexcept;
+  /// Returns the most by which the distance of two triangles that are no farther apart than
+  /// `margin` is wrong in double, mesh units.
+  [[nodiscard]] double distance_error(double margin) const noexcept {
+    return kTriangleDistanceError * (longest_edge_ + margin);
+  }
+
+  void forget() noexcept {
+    witnesses_ = {};
+    if (near_) near_->forget();
+  }
+
   /// Returns whether the bodies are so far apart, against their sizes, that float cannot tell their
   /// triangles' distances from each other.
   [[nodiscard]] bool is_too_far(const RelativePose& pose) const noexcept;
@@ -106,14 +127,16 @@ class TriangleSearch {
   }
   /// Returns the bytes that a search of these trees reserves, with one worker or two.
   [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed, const SphereTree& moving,
-                                             int workers, std::size_t items = 0) noexcept;
+                                             const TriangleOptions& options) noexcept;
 
  private:
   [[nodiscard]] double radii() const noexcept {
     return fixed_->bounding_radius() + moving_->bounding_radius();
   }
   [[nodiscard]] ClusterPose cluster_pose(const TrianglePose& pose) const noexcept;
+  [[nodiscard]] ClusterPose cluster_pose(const Eigen::Isometry3d& rigid) const noexcept;
   [[nodiscard]] bool still_meet(const Meshes& meshes, const Budget& budget) const noexcept;
+  void prepare_near(const NearCache::Need& need, std::uint64_t tests) noexcept;
   template <class Visitor>
   void begin_nearest(BudgetMeter& meter, Visitor& nearest) noexcept;
 
@@ -125,6 +148,7 @@ class TriangleSearch {
   PairList list_;
   FoundMemory memory_;
   std::optional<SharedPairs> shared_;
+  std::optional<NearCache> near_;
   Witnesses witnesses_;
 };
 

@@ -15,7 +15,7 @@ constexpr double kSlow = 0.5;
 // The caches belong to the pairs.
 QueryOptions without_cache(const WorldOptions& options) {
   QueryOptions query = options.query;
-  query.front_pairs = 0;
+  query.front_pairs = query.near_pairs = 0;
   return query;
 }
 

@@ -99,7 +99,10 @@ struct WorldPair {
   /// The distance between the surfaces, as far as the root bounds tell it; without a pose from 0 to
   /// the largest double.
   DistanceInterval roots{};
-  DistanceInterval distance{};     ///< as far as the question told it, or else the roots
+  DistanceInterval distance{};  ///< as far as the question told it, or else the roots
+  /// The nearest triangles, as DistanceResult has them, with points in world coordinates. Empty
+  /// after other questions than kDistance and World::distance.
+  std::optional<NearPair> nearest = std::nullopt;
   double narrowest = 0;            ///< kDistance: no tolerance below this width can be reached
   double resolution = 0;           ///< the surfaces in a leaf pair are no farther apart; 0: unknown
   double pad = 0;                  ///< kContacts, kLeafPairs: QueryResult::pad
@@ -136,8 +139,9 @@ struct WorldDistance {
   /// Holds the least distance, mesh units. Both ends are the largest double if no pair counts;
   /// [0, infinity] without an answer.
   DistanceInterval distance{0, std::numeric_limits<double>::infinity()};
-  std::optional<BodyPair> nearest = std::nullopt;  ///< the pair with the least upper end
-  std::uint64_t sphere_tests = 0;                  ///< of all pairs, as Budget::tests counts them
+  /// The pair with the least upper end. Its WorldPair in `pairs` has the nearest points.
+  std::optional<BodyPair> nearest = std::nullopt;
+  std::uint64_t sphere_tests = 0;  ///< of all pairs, as Budget::tests counts them
   /// The pairs that may be nearest by their roots, in the order of BodyPair, until the next call;
   /// those that need not be asked have the interval of their roots.
   std::span<const WorldPair> pairs = {};

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "ist/query/relative_pose.h"
 #include "ist/query/traversal/budget_meter.h"
 #include "ist/query/world/world_state.h"
 
@@ -42,15 +43,24 @@ void take_leaf_pairs(const QueryResult& result, WorldPair& pair) noexcept {
   pair.pad = result.pad;
   pair.found = result.leaf_pairs;
 }
-void take_distance(const DistanceResult& result, WorldPair& pair) noexcept {
+// `fixed` is the pose of the fixed body in the world.
+void take_distance(const DistanceResult& result, const BodyPose& fixed, WorldPair& pair) noexcept {
   take(result, pair);
+  pair.nearest = result.nearest;
+  if (pair.nearest) {
+    const RelativePose pose{fixed.rotation, fixed.translation};
+    pair.nearest->fixed_point = moved(pose, pair.nearest->fixed_point);
+    pair.nearest->moving_point = moved(pose, pair.nearest->moving_point);
+  }
   if (result.status == QueryStatus::kDone) pair.distance = result.distance;
   pair.narrowest = result.narrowest;
 }
 
 // Asks the query of a pair. The span of the question is free from `pair.first` on.
 void ask_query(const WorldQuestion& question, Query& query, ContactManifold& manifold,
-               const Eigen::Isometry3d& pose, const Budget& budget, WorldPair& pair) noexcept {
+               const PairAtPose& at, const BodyPose& fixed, const Budget& budget,
+               WorldPair& pair) noexcept {
+  const Eigen::Isometry3d pose = to_isometry(at.pose);
   switch (question.kind) {
     case WorldQuestion::kNear:
       break;
@@ -81,7 +91,7 @@ void ask_query(const WorldQuestion& question, Query& query, ContactManifold& man
       break;
     }
     case WorldQuestion::kDistance:
-      take_distance(query.distance(pose, question.tolerance, budget), pair);
+      take_distance(query.distance(pose, question.tolerance, budget), fixed, pair);
       break;
   }
 }
@@ -145,7 +155,7 @@ void detail::WorldState::ask_pair(std::size_t thread, std::size_t k,
                             of_leaves ? reserved.slots.of(memory) : nullptr);
   ContactManifold& manifold = reserved.manifolds[k];
   if (round.question.kind == WorldQuestion::kContacts) asker.bind(manifold);
-  ask_query(round.question, query, manifold, to_isometry(at.pose), budget, pair);
+  ask_query(round.question, query, manifold, at, bodies[at.bodies.a].pose, budget, pair);
   asker.keep(memory);
 }
 
@@ -234,7 +244,8 @@ WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
       Query& query =
           asker.bind(s.asked(pair.bodies.a), s.asked(pair.bodies.b), memory, false, nullptr);
       take_distance(
-          query.distance(to_isometry(at.pose), tolerance, BudgetMeter(budget, spent).rest()), pair);
+          query.distance(to_isometry(at.pose), tolerance, BudgetMeter(budget, spent).rest()),
+          s.bodies[pair.bodies.a].pose, pair);
       asker.keep(memory);
       spent += pair.sphere_tests;
     }

@@ -1,10 +1,10 @@
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 
 #include "ist/base/access.h"
-#include "ist/base/error.h"
+#include "ist/base/counted.h"
+#include "ist/base/throw_error.h"
 #include "ist/query/world/world_state.h"
 
 namespace ist::detail {
@@ -57,13 +57,12 @@ WorldState::Reserved::Reserved(std::size_t most, WorldState& world, const AskerR
 BodyPair WorldState::checked(BodyIndex a, BodyIndex b) const {
   for (const BodyIndex body : {a, b}) {
     if (is_there(body)) continue;
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("world: body {} is not there: {} bodies were added, from 0 on", body,
-                            bodies.size()));
+    throw_error(ErrorCode::kArgumentInvalid, "world: body {} is not there: {} added, from 0 on",
+                body, counted(bodies.size(), "body was", "bodies were"));
   }
   if (a == b) {
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("world: '{}' is no pair with itself: give two bodies", bodies[a].name));
+    throw_error(ErrorCode::kArgumentInvalid, "world: '{}' is no pair with itself: give two bodies",
+                bodies[a].name);
   }
   return {std::min(a, b), std::max(a, b)};
 }
@@ -95,13 +94,13 @@ std::uint64_t WorldState::bytes_for(std::size_t room, const AskerRoom& sizes,
   const std::uint64_t sum = of_pairs + of_threads + of_caches;
   if (sum <= limit) return sum;
   const auto megabytes = [](std::uint64_t bytes) { return static_cast<double>(bytes) / kMegabyte; };
-  throw Error(
-      ErrorCode::kMemoryLimit,
-      fmt::format("world: {} near pairs take {:.1f} MB, {} threads {:.1f} MB and {} pair caches "
-                  "{:.1f} MB, and max_memory is {:.1f} MB: reserve for fewer pairs, lower "
-                  "query.frontier_pairs, manifold.max_leaves or pair_caches, or raise max_memory",
-                  room, megabytes(of_pairs), options.threads, megabytes(of_threads),
-                  slots_for(room, options), megabytes(of_caches), megabytes(limit)));
+  throw_error(ErrorCode::kMemoryLimit,
+              "world: {} take {:.1f} MB, {} {:.1f} MB and {} {:.1f} MB, and max_memory is {:.1f} "
+              "MB: reserve for fewer pairs, lower query.frontier_pairs, manifold.max_leaves or "
+              "pair_caches, or raise max_memory",
+              counted(room, "near pair"), megabytes(of_pairs), counted(options.threads, "thread"),
+              megabytes(of_threads), counted(slots_for(room, options), "pair cache"),
+              megabytes(of_caches), megabytes(limit));
 }
 
 void WorldState::reserve(std::size_t near_pairs) {
