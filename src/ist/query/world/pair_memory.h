@@ -54,11 +54,12 @@ class PairMemories {
   void clear() noexcept { pairs_.clear(); }
 
   [[nodiscard]] PairMemory& operator[](std::size_t k) noexcept { return pairs_[k]; }
-  /// Returns the memory of a pair that is kept.
-  [[nodiscard]] PairMemory& of(BodyPair bodies) noexcept {
-    return *std::lower_bound(
+  /// Returns the place of a pair that is kept.
+  [[nodiscard]] std::size_t place_of(BodyPair bodies) const noexcept {
+    const auto at = std::lower_bound(
         pairs_.begin(), pairs_.end(), bodies,
         [](const PairMemory& memory, BodyPair wanted) { return memory.bodies < wanted; });
+    return static_cast<std::size_t>(at - pairs_.begin());
   }
   /// Returns the bytes for so many pairs.
   [[nodiscard]] static constexpr std::uint64_t bytes_for(std::size_t room) noexcept {

@@ -218,7 +218,7 @@ WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
 
   double lower = s.find_candidates();  // of all pairs that are done with
   double upper = kLargestDistance;
-  const std::vector<WorldState::Candidate>& candidates = s.reserved.candidates;
+  std::vector<WorldState::Candidate>& candidates = s.reserved.candidates;
   PairMemories& memories = s.reserved.memories;
   memories.keep(candidates.size(), [&](std::size_t k) { return candidates[k].bodies; });
   const std::span<WorldPair> pairs = std::span(s.reserved.nearest).first(candidates.size());
@@ -226,20 +226,21 @@ WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
     pairs[k] = by_roots(s.look(candidates[k].bodies));
     fill_unasked(WorldQuestion::kDistance, pairs[k]);
     upper = std::min(upper, pairs[k].roots.upper);
+    candidates[k].lower = pairs[k].roots.lower;
   }
-  std::sort(pairs.begin(), pairs.end(), [](const WorldPair& a, const WorldPair& b) {
-    return a.roots.lower < b.roots.lower || (a.roots.lower == b.roots.lower && a.bodies < b.bodies);
-  });
+  std::sort(candidates.begin(), candidates.end());
 
   const double width = tolerance > 0 ? tolerance : 0;
   std::uint64_t spent = 0;
-  for (WorldPair& pair : pairs) {
-    // No later pair is nearer than the roots of this one.
+  for (const WorldState::Candidate& candidate : candidates) {
+    const std::size_t k = memories.place_of(candidate.bodies);
+    WorldPair& pair = pairs[k];
+    // No later candidate is nearer than the roots of this one.
     const bool enough =
         pair.roots.lower > upper || upper - std::min(lower, pair.roots.lower) <= width;
     if (!enough && pair.status == QueryStatus::kDone && !budget.is_past()) {
       const PairAtPose at = s.look(pair.bodies);
-      PairMemory& memory = memories.of(pair.bodies);
+      PairMemory& memory = memories[k];
       detail::PairAsker& asker = *s.reserved.askers.front();
       Query& query =
           asker.bind(s.asked(pair.bodies.a), s.asked(pair.bodies.b), memory, false, nullptr);
@@ -260,15 +261,13 @@ WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
   for (const WorldPair& pair : pairs) {
     all.sphere_tests += pair.sphere_tests;
     const double end = pair.distance.upper;
-    if (all.nearest && !(end < least || (end == least && pair.bodies < *all.nearest))) continue;
+    if (all.nearest && !(end < least)) continue;
     all.nearest = pair.bodies;
     least = end;
   }
   const bool lost = lacks_a_pose(s);
   if (lost) all.status = QueryStatus::kInvalidPose;
   all.complete = !lost && upper - all.distance.lower <= width;
-  std::sort(pairs.begin(), pairs.end(),
-            [](const WorldPair& a, const WorldPair& b) { return a.bodies < b.bodies; });
   all.pairs = pairs;
   return all;
 }
