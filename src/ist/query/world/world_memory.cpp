@@ -95,12 +95,12 @@ std::uint64_t WorldState::bytes_for(std::size_t room, const AskerRoom& sizes,
   if (sum <= limit) return sum;
   const auto megabytes = [](std::uint64_t bytes) { return static_cast<double>(bytes) / kMegabyte; };
   throw_error(ErrorCode::kMemoryLimit,
-              "world: {} take {:.1f} MB, {} {:.1f} MB and {} {:.1f} MB, and max_memory is {:.1f} "
-              "MB: reserve for fewer pairs, lower query.frontier_pairs, manifold.max_leaves or "
-              "pair_caches, or raise max_memory",
-              counted(room, "near pair"), megabytes(of_pairs), counted(options.threads, "thread"),
-              megabytes(of_threads), counted(slots_for(room, options), "pair cache"),
-              megabytes(of_caches), megabytes(limit));
+              "world: {:.1f} MB for {}, {:.1f} MB for {} and {:.1f} MB for {} are more than "
+              "max_memory, {:.1f} MB: reserve for fewer pairs, lower query.frontier_pairs, "
+              "manifold.max_leaves or pair_caches, or raise max_memory",
+              megabytes(of_pairs), counted(room, "near pair"), megabytes(of_threads),
+              counted(options.threads, "thread"), megabytes(of_caches),
+              counted(slots_for(room, options), "pair cache"), megabytes(limit));
 }
 
 void WorldState::reserve(std::size_t near_pairs) {
