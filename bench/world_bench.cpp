@@ -1,5 +1,6 @@
 // What a world costs beside its queries: a tick of four bodies against the same pairs asked one by
-// one, in turns; a pair that is apart; a hundred bodies at rest, and moving.
+// one, in turns; a pair that is apart; a hundred bodies at rest, and moving; a thousand that were
+// just added.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -44,7 +45,7 @@ struct FourBodies {
     options.query.front_pairs = 1 << 15;
     world.emplace(options);
     for (const SphereTree& tree : trees) world->add(tree);
-    world->prepare();
+    world->reserve();
     for (BodyIndex a = 0; a < kFour; ++a) {
       for (BodyIndex b = a + 1; b < kFour; ++b) {
         pairs.push_back({a, b});
@@ -165,14 +166,18 @@ void measure_four(benchmark::State& state, const Question& question) {
   state.SetLabel(pair_name());
 }
 
-// Balls on a grid, `step` apart, without a query.
-World grid(int count, double step) {
+const SphereTree& small_ball() {
   static const SphereTree ball = shape(make_icosphere(3, 1), 0.1);
+  return ball;
+}
+
+// Balls on a grid, `step` apart.
+World grid(int count, double step) {
   World world;
   for (int i = 0; i < count; ++i) {
-    world.add(ball, at(step * Eigen::Vector3d(i % 5, i / 5 % 5, i / 25)));
+    world.add(small_ball(), at(step * Eigen::Vector3d(i % 5, i / 5 % 5, i / 25)));
   }
-  world.prepare({});
+  world.reserve(static_cast<std::size_t>(count));
   return world;
 }
 
@@ -187,11 +192,37 @@ void measure_grid(benchmark::State& state, int count, double step, int moved) {
       world.set_pose(static_cast<BodyIndex>(i),
                      at(step * Eigen::Vector3d(i % 5, i / 5 % 5, i / 25 + 0.001 * (tick % 2))));
     }
-    near += world.ask({WorldQuestion::kIntersects}).near_pairs;
+    near += world.ask({WorldQuestion::kNear}).near_pairs;
   }
   state.counters["bodies"] = count;
   state.counters["moved"] = moved;
   state.counters["near"] = static_cast<double>(near) / static_cast<double>(tick);
+}
+
+// A thousand balls of one tree, each in its neighbours: from the first add() to the first answer.
+void measure_thousand(benchmark::State& state, std::size_t threads) {
+  constexpr int kEdge = 10;
+  static_cast<void>(small_ball());
+  std::uint64_t bytes = 0, near = 0, touching = 0;
+  for (auto _ : state) {
+    World world({.threads = threads});
+    for (int i = 0; i < kEdge * kEdge * kEdge; ++i) {
+      world.add(small_ball(),
+                at(1.9 * Eigen::Vector3d(i % kEdge, i / kEdge % kEdge, i / kEdge / kEdge)));
+    }
+    world.reserve(1 << 12);
+    const WorldAnswer answer = world.ask({WorldQuestion::kIntersects});
+    if (!answer.complete) state.SkipWithError("more pairs are near than expected");
+    near = answer.near_pairs;
+    touching = 0;
+    for (const WorldPair& pair : answer.pairs) touching += pair.answer == Answer::kYes ? 1 : 0;
+    bytes = world.bytes();
+  }
+  state.counters["bodies"] = kEdge * kEdge * kEdge;
+  state.counters["threads"] = static_cast<double>(threads);
+  state.counters["near"] = static_cast<double>(near);
+  state.counters["touching"] = static_cast<double>(touching);
+  state.counters["megabytes"] = 1e-6 * static_cast<double>(bytes);
 }
 
 void add_grid(const char* name, int count, double step, int moved) {
@@ -213,6 +244,12 @@ const bool kAdded = [] {
   add_grid("world/a_pair_near_and_not_prepared", 2, 2, 1);
   add_grid("world/hundred_at_rest", 100, 10, 0);
   add_grid("world/hundred_moving", 100, 10, 100);
+  for (const std::size_t threads : {std::size_t{1}, std::size_t{2}}) {
+    benchmark::RegisterBenchmark(fmt::format("world/thousand_balls/threads_{}", threads).c_str(),
+                                 [=](benchmark::State& state) { measure_thousand(state, threads); })
+        ->Unit(benchmark::kMillisecond)
+        ->UseRealTime();
+  }
   return true;
 }();
 

@@ -41,7 +41,7 @@ int main() try {
   // The post is screwed to the plate, so nobody asks about this pair.
   world.ignore(plate_body, post_body);
   // This reserves the memory for all other pairs. The questions then allocate nothing.
-  world.prepare();
+  world.reserve();
 
   std::printf("the ball lies on the plate:\n");
   print_pairs_that_touch(world);

@@ -10,6 +10,7 @@ namespace ist::capi {
 namespace {
 
 static_assert(IST_MOST_BODIES == kMostBodies);
+static_assert(IST_MOST_THREADS == kMostThreads);
 
 struct WorldObject : OfHandle<ist_world, HandleKind::kWorld, HandleUse::kAlone> {
   explicit WorldObject(const WorldOptions& options) : world(options) {}
@@ -23,7 +24,7 @@ bool world_answered(Call& call, QueryStatus status, const double* pose = nullptr
     call.fail(IST_ARGUMENT_INVALID, "no body has this number: pass one that was added");
   } else if (status == QueryStatus::kNotPrepared) {
     call.fail(IST_NOT_PREPARED,
-              "the world is not prepared: call ist_world_prepare after the last body");
+              "the world is not prepared: call ist_world_reserve after the last body");
   }
   return answered(call, status, pose);
 }
@@ -38,17 +39,15 @@ WorldOptions read_world_options(Call& call, const ist_world_options* given) {
     if (!query.manifold) options.manifold.points = 0;
   }
   if (given != nullptr) options.reach = known.reach;
-  if (known.most_near > 0) options.most_near = known.most_near;
+  if (known.pair_caches > 0) options.pair_caches = known.pair_caches;
+  if (known.threads < 0) {
+    call.fail(IST_ARGUMENT_INVALID, "options->threads is {}: pass 1 to {}", known.threads,
+              IST_MOST_THREADS);
+  } else if (known.threads > 0) {
+    options.threads = static_cast<std::size_t>(known.threads);
+  }
   if (known.max_memory > 0) options.max_memory = known.max_memory;
   return options;
-}
-
-// The pairs of a caller; empty for all.
-std::optional<std::vector<BodyPair>> pairs_of(const ist_body_pair* pairs, std::size_t count) {
-  if (pairs == nullptr) return std::nullopt;
-  std::vector<BodyPair> made;
-  for (const auto& [a, b] : std::span(pairs, count)) made.push_back({a, b});
-  return made;
 }
 
 // Returns the status of a pair. It is no error of the call.
@@ -158,33 +157,21 @@ ist_status ist_world_ignore(ist_world* world, uint32_t a, uint32_t b) IST_NOEXCE
   });
 }
 
-ist_status ist_world_bytes_needed(ist_world* world, const ist_body_pair* pairs, size_t count,
+ist_status ist_world_bytes_needed(ist_world* world, uint64_t near_pairs,
                                   uint64_t* bytes) IST_NOEXCEPT {
   return guarded(__func__, [&](Call& call) {
     call.clear("bytes", bytes);
-    call.need_array("pairs", pairs, count);
     const Held<WorldObject> held(call, "world", world);
     if (!held) return;
-    const auto some = pairs_of(pairs, count);
-    *bytes = some ? held->world.bytes_needed(*some) : held->world.bytes_needed();
+    *bytes = held->world.bytes_needed(near_pairs);
   });
 }
 
-ist_status ist_world_prepare(ist_world* world, const ist_body_pair* pairs, size_t count,
-                             const ist_progress* progress) IST_NOEXCEPT {
+ist_status ist_world_reserve(ist_world* world, uint64_t near_pairs) IST_NOEXCEPT {
   return guarded(__func__, [&](Call& call) {
-    call.need_array("pairs", pairs, count);
-    const Follower follower = read_follower(call, progress);
     const Held<WorldObject> held(call, "world", world);
     if (!held) return;
-    const auto some = pairs_of(pairs, count);
-    bool prepared = false;
-    followed(follower, [&](const ist::Proceed& proceed) {
-      held->world.prepare(some, proceed);
-      prepared = true;
-    });
-    // A caller who says stop after the last pair is too late.
-    if (!prepared) cancelled(call);
+    held->world.reserve(near_pairs);
   });
 }
 
@@ -268,7 +255,7 @@ ist_status ist_world_get_contacts(ist_world* world, uint32_t a, uint32_t b, ist_
     if (manifold == nullptr) {
       return call.fail(IST_NOT_PREPARED,
                        "the last ist_world_ask for IST_ASK_CONTACTS did not ask bodies {} and {}: "
-                       "prepare the pair, and look at its status",
+                       "look at the pair's status, and reserve for more near pairs",
                        a, b);
     }
     const std::span<const ist::Contact> made = manifold->points();

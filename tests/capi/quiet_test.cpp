@@ -41,7 +41,7 @@ struct Bodies {
                 "ok");
     }
     EXPECT_EQ(name(ist_tree_free(tree)), "ok");
-    EXPECT_EQ(name(ist_world_prepare(world, nullptr, 0, nullptr)), "ok");
+    EXPECT_EQ(name(ist_world_reserve(world, IST_ALL_PAIRS)), "ok");
   }
   ~Bodies() {
     EXPECT_EQ(name(ist_query_free(query)), "ok");

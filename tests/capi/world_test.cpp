@@ -91,10 +91,10 @@ TEST_F(CWorld, GivesTheAnswersOfCpp) {
   ASSERT_EQ(name(ist_world_set_pose(world_, 0, rough.data())), "ok");
   ASSERT_EQ(cpp_->set_pose(0, isometry(rough)), QueryStatus::kDone);
   std::uint64_t bytes = 0;
-  ASSERT_EQ(name(ist_world_bytes_needed(world_, nullptr, 0, &bytes)), "ok");
+  ASSERT_EQ(name(ist_world_bytes_needed(world_, IST_ALL_PAIRS, &bytes)), "ok");
   EXPECT_EQ(bytes, cpp_->bytes_needed());
-  ASSERT_EQ(name(ist_world_prepare(world_, nullptr, 0, nullptr)), "ok");
-  cpp_->prepare();
+  ASSERT_EQ(name(ist_world_reserve(world_, IST_ALL_PAIRS)), "ok");
+  cpp_->reserve();
   auto info = sized<ist_world_info>();
   ASSERT_EQ(name(ist_world_get_info(world_, &info)), "ok");
   EXPECT_EQ(info.bytes, bytes);
@@ -171,8 +171,8 @@ TEST_F(CWorld, GivesTheAnswersOfCpp) {
 }
 
 TEST_F(CWorld, GivesTheContactsOfCpp) {
-  ASSERT_EQ(name(ist_world_prepare(world_, nullptr, 0, nullptr)), "ok");
-  cpp_->prepare();
+  ASSERT_EQ(name(ist_world_reserve(world_, IST_ALL_PAIRS)), "ok");
+  cpp_->reserve();
   const auto felt = cpp_->ask({WorldQuestion::kContacts});
   std::uint64_t count = 0;
   EXPECT_EQ(name(ist_world_get_contacts(world_, 0, 1, nullptr, 0, nullptr, &count)),
@@ -194,7 +194,7 @@ TEST_F(CWorld, GivesTheContactsOfCpp) {
 }
 
 TEST_F(CWorld, MovesBodiesAndTellsTheirPoses) {
-  ASSERT_EQ(name(ist_world_prepare(world_, nullptr, 0, nullptr)), "ok");
+  ASSERT_EQ(name(ist_world_reserve(world_, IST_ALL_PAIRS)), "ok");
   EXPECT_EQ(name(ist_world_set_pose(world_, 1, c_shift(0, 30, 0).data())), "ok");
   double pose[16];
   ASSERT_EQ(name(ist_world_get_pose(world_, 0, 1, pose)), "ok");
@@ -222,29 +222,28 @@ TEST_F(CWorld, MovesBodiesAndTellsTheirPoses) {
   EXPECT_GT(least.lower, 0);
 }
 
-TEST_F(CWorld, PreparesSomePairs) {
-  const ist_body_pair some[] = {{1, 0}};
+TEST_F(CWorld, ReservesForSomePairs) {
   std::uint64_t one = 0, all = 0;
-  ASSERT_EQ(name(ist_world_bytes_needed(world_, some, 1, &one)), "ok");
-  ASSERT_EQ(name(ist_world_bytes_needed(world_, nullptr, 0, &all)), "ok");
+  ASSERT_EQ(name(ist_world_bytes_needed(world_, 1, &one)), "ok");
+  ASSERT_EQ(name(ist_world_bytes_needed(world_, IST_ALL_PAIRS, &all)), "ok");
   EXPECT_LT(one, all);
   EXPECT_EQ(name(ask(IST_ASK_INTERSECTS)), "not-prepared");
-  ASSERT_EQ(name(ist_world_prepare(world_, some, 1, nullptr)), "ok");
   EXPECT_EQ(name(ist_world_ignore(world_, 2, 0)), "ok");
-  question_.ask = IST_ASK_INTERSECTS;
+  ASSERT_EQ(name(ist_world_reserve(world_, 1)), "ok");
   auto budget = sized<ist_budget>();
   budget.tests = 1'000'000;
-  ASSERT_EQ(name(ist_world_ask(world_, &question_, &budget, pairs_, 1, &result_)), "ok");
+  ASSERT_EQ(name(ask(IST_ASK_INTERSECTS, &budget)), "ok");
   EXPECT_EQ(result_.near_pairs, 2u);
   EXPECT_EQ(result_.written, 1u);
   EXPECT_EQ(result_.truncated, 1);
-  ASSERT_EQ(name(ask(IST_ASK_INTERSECTS, &budget)), "ok");
+  EXPECT_EQ(result_.complete, 0);
   EXPECT_EQ(pairs_[0].status, IST_OK);
-  EXPECT_EQ(pairs_[1].status, IST_NOT_PREPARED);
-  // Some pairs, of which there are none: only the room for answers.
-  ASSERT_EQ(name(ist_world_prepare(world_, some, 0, nullptr)), "ok");
-  ASSERT_EQ(name(ask(IST_ASK_INTERSECTS)), "ok");
-  EXPECT_EQ(pairs_[0].status, IST_NOT_PREPARED);
+  // As many as the answer said.
+  ASSERT_EQ(name(ist_world_reserve(world_, result_.near_pairs)), "ok");
+  ASSERT_EQ(name(ist_world_ask(world_, &question_, &budget, pairs_, 1, &result_)), "ok");
+  EXPECT_EQ(result_.written, 1u);
+  EXPECT_EQ(result_.truncated, 1);
+  EXPECT_EQ(result_.complete, 1);
 }
 
 TEST_F(CWorld, TellsWhatIsMisused) {
@@ -261,6 +260,12 @@ TEST_F(CWorld, TellsWhatIsMisused) {
   options.query = &query;
   query.workers = 2;
   expect(ist_world_create(&options, &none), "argument-invalid", "workers is 2");
+  query.workers = 1;
+  for (const std::int32_t threads : {-1, IST_MOST_THREADS + 1}) {
+    options.threads = threads;
+    expect(ist_world_create(&options, &none), "argument-invalid", "threads is");
+  }
+  options.threads = 0;
   query.workers = 5;
   expect(ist_world_create(&options, &none), "argument-invalid", "workers is 5");
   options.struct_size = 9;
@@ -292,7 +297,7 @@ TEST_F(CWorld, TellsWhatIsMisused) {
   for (const char* const each : {"first", "second"}) {
     ASSERT_EQ(name(ist_world_add(none, tree_, nullptr, each, &body)), "ok");
   }
-  expect(ist_world_prepare(none, nullptr, 0, nullptr), "memory-limit", "'first' and 'second'");
+  expect(ist_world_reserve(none, IST_ALL_PAIRS), "memory-limit", "1 near pair");
   EXPECT_EQ(name(ist_world_free(none)), "ok");
 }
 

@@ -23,7 +23,6 @@ class Ended(Exception):
 
 
 class Follow(Jaws):
-    world = None
 
     @classmethod
     def setUpClass(cls):
@@ -51,17 +50,7 @@ class Follow(Jaws):
             "occlusion": lambda progress: self.query.occlusion(JAW_POSES[2], longest_edge=0.1, progress=progress),
             "signed_distance": lambda progress: ist.signed_distance(self.upper, points, progress=progress),
             "distance_map": lambda progress: ist.distance_map(self.upper, self.lower, JAW_POSES[1], progress=progress),
-            "prepare": self.prepare,
         }
-
-    def prepare(self, progress):
-        """Prepares all pairs of some bodies anew."""
-        if self.world is None:
-            type(self).world = ist.World(contacts=-1, frontier_pairs=1024)
-            for _ in range(12):
-                self.world.add(self.upper)
-        self.world.prepare([])
-        self.world.prepare(progress=progress)
 
     def test_parts_are_told_on_the_callers_thread(self):
         most = 0
@@ -148,8 +137,6 @@ class Interrupt(unittest.TestCase):
         "occlusion": "query.occlusion(np.eye(4), longest_edge=0.01)",
         "rows": "query.rows(np.tile(np.eye(4), (400_000, 1, 1)), tolerance=0.001, threads=1)",
         "to_bytes": "while True: query.fixed.to_bytes()",
-        "prepare": "world = ist.World(contacts=-1, frontier_pairs=1024)\n    for _ in range(12): world.add(query.fixed)\n"
-                   "    while True: world.prepare([]), world.prepare()",
         "load of bytes": "bytes = query.fixed.to_bytes()\n    while True: ist.load(bytes)",
     }
     # The call's third report is made while it lasts.

@@ -37,7 +37,7 @@ force, torque, about = query.contacts(np.eye(4)).wrench(2.0)
 tree = ist.load(pathlib.Path("a.ist"))
 world = ist.World(reach=0.5)
 body: int = world.add(tree, np.eye(4), name="jaw")
-world.prepare([(0, body)], progress=lambda part: None)
+world.reserve(near_pairs=8)
 found = world.leaf_pairs(out=np.empty(4, ist.WORLD_PAIR))
 of_first = found.found_of(found.pairs[0])
 touching: bool = world.ask("intersects", tests=100).complete

@@ -13,10 +13,6 @@ def shift(*by):
     return pose_of([0, 0, 1], 0, by)
 
 
-class Ended(Exception):
-    pass
-
-
 class Worlds(Refusals):
     """Three boxes in a row, each in the next, turned; and one far away."""
 
@@ -31,7 +27,7 @@ class Worlds(Refusals):
         return ist.Query(self.trees[row["a"]], self.trees[row["b"]])
 
     def test_answers_are_those_of_queries(self):
-        self.world.prepare()
+        self.world.reserve()
         touch, leaves, met = self.world.intersects(), self.world.leaf_pairs(), self.world.triangle_pairs()
         felt, apart = self.world.contacts(), self.world.distances(0.01)
         self.assertTrue(touch.complete and not touch.truncated)
@@ -60,7 +56,7 @@ class Worlds(Refusals):
         self.assertGreater(leaves.pairs["found"].sum(), 100)
 
     def test_contacts_that_a_limit_ended_say_so(self):
-        self.world.prepare()
+        self.world.reserve()
         whole, all_of = self.world.contacts().pairs, self.world.contacts_of(0, 1)
         for out in (None, np.zeros(3, ist.WORLD_PAIR), np.zeros(1, ist.WORLD_PAIR)):
             row = self.world.contacts(tests=int(whole["sphere_tests"][0]) // 2, out=out).pairs[0]
@@ -77,26 +73,8 @@ class Worlds(Refusals):
         self.assertEqual(self.world.contacts_of(0, 1).sphere_tests, whole["sphere_tests"][0])
         self.assertFalse(self.world.contacts_of(1, 2).complete)
 
-    def test_a_preparation_that_is_ended_leaves_the_world(self):
-        def ends(part):
-            raise Ended(part)
-
-        self.world.prepare([(0, 1)])
-        self.world.contacts()
-        before, contacts = self.world.nbytes, self.world.contacts_of(0, 1)
-        for ended in (ends, lambda part: self.world.near_pairs()):  # of which the second gets a BusyError
-            with self.assertRaises(Ended if ended is ends else ist.BusyError):
-                self.world.prepare(progress=ended)
-            self.assertEqual(self.world.nbytes, before)
-            self.assertEqual(self.world.contacts_of(0, 1).contacts.tobytes(), contacts.contacts.tobytes())
-            self.assertEqual(self.world.intersects().pairs["status"].tolist(), [0, ist.NOT_PREPARED, ist.NOT_PREPARED])
-        parts = []
-        self.world.prepare(progress=parts.append)
-        self.assertEqual(parts[0], 0)
-        self.assertEqual(self.world.intersects().pairs["status"].tolist(), [0, 0, 0])
-
     def test_least_distance(self):
-        self.world.prepare()
+        self.world.reserve()
         self.assertEqual(self.world.distance(0.01)[:4], (0, 0, True, (0, 1)))
         self.world.set_pose(1, shift(0, 30, 0))
         least = self.world.distance(0.001)
@@ -108,7 +86,7 @@ class Worlds(Refusals):
         self.assertFalse(self.world.distance(0.0, tests=1).complete)
 
     def test_a_pose_that_is_none(self):
-        self.world.prepare()
+        self.world.reserve()
         with self.assertRaises(ist.InputError) as raised:
             self.world.set_pose(1, np.full((4, 4), np.nan))
         self.assertEqual(raised.exception.code, ist.POSE_INVALID)
@@ -122,26 +100,35 @@ class Worlds(Refusals):
 
     def test_memory(self):
         self.assertEqual(self.world.nbytes, 0)
-        some = self.world.bytes_needed([(0, 1)])
-        self.assertLess(some, self.world.bytes_needed())
+        one = self.world.bytes_needed(1)
+        self.assertLess(one, self.world.bytes_needed())
         self.world.ignore(0, 2)
-        self.world.prepare(np.array([[1, 0]]))
-        self.assertEqual(self.world.nbytes, some)
+        self.world.reserve(1)
+        self.assertEqual(self.world.nbytes, one)
         found = self.world.intersects()
-        self.assertEqual(found.pairs["status"].tolist(), [0, ist.NOT_PREPARED])
-        self.assertEqual(found.pairs["answer"].tolist(), [ist.YES, ist.UNKNOWN])
-        self.world.prepare([])
-        self.assertEqual(self.world.near_pairs().count, 2)
-        self.assertEqual(self.world.intersects().pairs["status"].tolist(), [ist.NOT_PREPARED] * 2)
-        small = ist.World(max_memory=1_000_000)
+        self.assertEqual((found.count, len(found.pairs), found.truncated, found.complete), (2, 1, True, False))
+        self.world.reserve(found.count)
+        found = self.world.intersects()
+        self.assertEqual(found.pairs["answer"].tolist(), [ist.YES, ist.YES])
+        self.assertTrue(found.complete and not found.truncated)
+        small = ist.World(max_memory=100_000)
         for k in range(2):
             small.add(self.trees[k], name=f"box {k}")
         with self.assertRaises(ist.MemoryLimitError) as raised:
-            small.prepare()
-        self.assertIn("'box 0' and 'box 1'", str(raised.exception))
+            small.reserve()
+        self.assertIn("1 near pair", str(raised.exception))
+
+    def test_answers_do_not_depend_on_threads(self):
+        several = ist.World(reach=0.1, threads=3)
+        for tree, pose in zip(self.trees, self.poses):
+            several.add(tree, pose)
+        for world in (self.world, several):
+            world.reserve()
+        for question in ("intersects", "contacts", "distances"):
+            self.assertEqual(several.ask(question).pairs.tobytes(), self.world.ask(question).pairs.tobytes())
 
     def test_arrays_are_filled_in_place(self):
-        self.world.prepare()
+        self.world.reserve()
         rows, leaves = np.zeros(2, ist.WORLD_PAIR), np.zeros(10, ist.LEAF_PAIR)
         found = self.world.leaf_pairs(into=leaves, out=rows)
         self.assertIs(found.pairs.base, rows)
@@ -165,21 +152,19 @@ class Worlds(Refusals):
         def refuses(words, call, *arguments, **options):
             self.refuses(ist.InputError, words, call, *arguments, **options)
 
-        refuses(["World.intersects: ", "call World.prepare"], self.world.intersects)
+        refuses(["World.intersects: ", "call World.reserve"], self.world.intersects)
         with self.assertRaises(TypeError):
             self.world.add(7)
         refuses(["pose", "(4, 4)"], self.world.add, self.trees[0], np.eye(3))
         refuses(["body 9"], self.world.ignore, 0, 9)
         refuses(["'box 1'"], self.world.ignore, 1, 1)
         refuses(["a is -1"], self.world.ignore, -1, 1)
-        refuses(["pairs", "(N, 2)"], self.world.prepare, [[0, 1, 2]])
-        refuses(["pairs", "(N, 2)"], self.world.prepare, [[0.5, 1]])
-        refuses(["pairs"], self.world.prepare, [[0, -1]])
-        refuses(["body 5"], self.world.prepare, [[0, 5]])
+        refuses(["near_pairs is -1"], self.world.reserve, -1)
+        refuses(["near_pairs"], self.world.bytes_needed, [(0, 1)])
         refuses(["reach"], ist.World, reach=-1)
         refuses(["contacts"], ist.World, contacts=0)
-        refuses(["most_near"], ist.World, most_near=0)
-        self.world.prepare()
+        refuses(["threads"], ist.World, threads=0)
+        self.world.reserve()
         refuses(["number"], self.world.set_pose, 8, np.eye(4))
         refuses(["out"], self.world.intersects, out=np.zeros(3))
         refuses(["out"], self.world.leaf_pairs, into=np.zeros(3, ist.CONTACT))
@@ -196,7 +181,7 @@ class Worlds(Refusals):
     def test_every_verb_refuses_bad_poses(self):
         no_motions = [np.full((4, 4), bad) for bad in (0, np.nan, np.inf)] + [2 * np.eye(4), shift(1, 2, 3).T, -np.eye(4)]
         no_matrices = [np.eye(3), np.eye(4)[None], 5, "pose", [[1, 2], [3]], np.eye(4).astype(complex), [[10**400] * 4] * 4]
-        self.world.prepare()
+        self.world.reserve()
         for verb in (lambda pose: self.world.add(self.trees[0], pose), lambda pose: self.world.set_pose(1, pose)):
             for pose in no_motions:
                 self.assertEqual(self.refuses(ist.InputError, "", verb, pose).name, "pose-invalid")
@@ -207,7 +192,7 @@ class Worlds(Refusals):
         self.assertTrue(self.world.intersects().complete)  # and goes on
 
     def test_every_verb_refuses_bad_numbers_and_arrays(self):
-        self.world.prepare()
+        self.world.reserve()
         world = self.world
         of_pairs = (world.intersects, world.contacts, world.distances, world.leaf_pairs, world.triangle_pairs)
         for verb in (*of_pairs, world.distance):
@@ -229,11 +214,11 @@ class Worlds(Refusals):
             self.refuses(ist.InputError, "out", world.contacts_of, 0, 1, out=out)
         for body in (-1, 2**32, 1.5, "upper", None, 9):
             for call in (lambda: world.set_pose(body, np.eye(4)), lambda: world.pose_of(0, body), lambda: world.ignore(body, 0),
-                         lambda: world.contacts_of(0, body), lambda: world.prepare([(0, body)])):
+                         lambda: world.contacts_of(0, body)):
                 self.refuses(ist.InputError, "", call)
-        for pairs in ([[0, 1], [2]], "pairs", 5, [[[0, 1]]], [(0, 0)]):
-            self.refuses(ist.InputError, "", world.prepare, pairs)
-            self.refuses(ist.InputError, "", world.bytes_needed, pairs)
+        for near_pairs in (-1, 2**64, 1.5, "pairs", [(0, 1)]):
+            self.refuses(ist.InputError, "near_pairs", world.reserve, near_pairs)
+            self.refuses(ist.InputError, "near_pairs", world.bytes_needed, near_pairs)
         for tolerance in (-1, np.nan, "fine", None):
             self.refuses(ist.InputError, "tolerance", world.distance, tolerance)
             self.refuses(ist.InputError, "tolerance", world.distances, tolerance)
@@ -241,7 +226,7 @@ class Worlds(Refusals):
 
     def test_bad_options(self):
         bad = {"reach": (-1, np.nan, np.inf, "far", None), "max_memory": (-1, 0, 2**64, 1.5, "much", None),
-               "most_near": (-1, 0, 2**64, 1.5, 1 << 40), "contacts": (0, -2, 5000, 1.5, "many", None),
+               "threads": (-1, 0, 17, 1.5, "all"), "pair_caches": (-1, 0, 2**64, 1.5), "contacts": (0, -2, 5000, 1.5, "many", None),
                "margin": (-1, np.nan, 3, "far"), "front_pairs": (-1, 2**64, "many"), "spheres": ("round", 3),
                "frontier_pairs": (-1, 2**64, "many"), "target": ("abacus", "\ud800")}
         for option, values in bad.items():
@@ -250,7 +235,7 @@ class Worlds(Refusals):
         self.assertEqual(ist.World().add(self.trees[0], name="\ud800"), 0)
 
     def test_a_second_thread_is_refused(self):
-        self.world.prepare()
+        self.world.reserve()
         seen = []
 
         def ask():

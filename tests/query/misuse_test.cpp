@@ -287,7 +287,7 @@ TEST(Query, OfTemporariesGivesTheSameAnswers) {
   World world({.query = options});
   world.add(ball(0.25, true));
   world.add(ball(0.5, true), pose);
-  world.prepare();
+  world.reserve();
   const WorldAnswer answer = world.ask({.kind = WorldQuestion::kIntersects});
   ASSERT_EQ(answer.pairs.size(), 1u);
   EXPECT_EQ(answer.pairs[0].answer, Answer::kYes);

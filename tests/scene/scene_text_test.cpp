@@ -130,7 +130,7 @@ TEST_F(Locale, MeasuresAndWorldsAreRefusedAlike) {
     World world({.max_memory = 1'234'567});
     static_cast<void>(world.add(tree));
     static_cast<void>(world.add(tree));
-    world.prepare();
+    world.reserve();
   });
   expect_same_error([] { static_cast<void>(make_splint(3, 0.25)); });
 }

@@ -301,7 +301,7 @@ TEST_P(FloatEnvironmentOfTheCInterface, ChangesNoWorld) {
         fine(ist_world_add(world, fixed, poses_[2].data(), "large", &body));
         fine(ist_world_add(world, moving, poses_[0].data(), "small", &body));
         fine(ist_world_add(world, fixed, poses_[1].data(), "other", &body));
-        fine(ist_world_prepare(world, nullptr, 0, nullptr));
+        fine(ist_world_reserve(world, IST_ALL_PAIRS));
         std::vector<ist_world_pair> pairs(8);
         auto result = sized<ist_world_result>();
         const auto say_all = [&](ist_status status) {

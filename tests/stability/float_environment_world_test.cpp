@@ -42,7 +42,7 @@ class FloatEnvironmentOfAWorld : public FloatEnvironmentOfTheCaller {
       for (std::size_t body = 0; body < poses_.size(); ++body) {
         static_cast<void>(world.add(body % 2 == 0 ? large_ : small_, poses_[body]));
       }
-      world.prepare();
+      world.reserve();
       call(world, record);
     });
   }
@@ -95,13 +95,11 @@ TEST_P(FloatEnvironmentOfAWorld, ChangesNoPose) {
 }
 
 TEST_P(FloatEnvironmentOfAWorld, ChangesNoMemory) {
-  changes_no_world("World::prepare and bytes_needed", 40, [](World& world, Record& record) {
+  changes_no_world("World::reserve and bytes_needed", 40, [](World& world, Record& record) {
     record.add(world.bytes());
     record.add(world.bytes_needed());
-    record.add(world.bytes_for(0, 3));
-    const std::vector<BodyPair> some = {{0, 1}, {0, 2}};
-    record.add(world.bytes_needed(some));
-    world.prepare(some);
+    record.add(world.bytes_needed(2));
+    world.reserve(2);
     record.add(world.bytes());
   });
 }

@@ -1,5 +1,7 @@
 #include "ist/query/manifold.h"
 
+#include <utility>
+
 #include "ist/base/float_environment.h"
 #include "ist/query/contacts/contact_reducer.h"
 
@@ -8,6 +10,8 @@ namespace ist {
 ContactManifold::ContactManifold(const SphereTree& fixed, const SphereTree& moving,
                                  SpherePolicy policy, const ManifoldOptions& options)
     : reducer_(std::make_unique<detail::ContactReducer>(fixed, moving, policy, options)) {}
+ContactManifold::ContactManifold(std::unique_ptr<detail::ContactReducer> reducer) noexcept
+    : reducer_(std::move(reducer)) {}
 ContactManifold::~ContactManifold() = default;
 ContactManifold::ContactManifold(ContactManifold&&) noexcept = default;
 ContactManifold& ContactManifold::operator=(ContactManifold&&) noexcept = default;

@@ -130,6 +130,7 @@ class IST_API ContactManifold {
 
  private:
   friend struct detail::Access;
+  explicit ContactManifold(std::unique_ptr<detail::ContactReducer> reducer) noexcept;
 
   std::unique_ptr<detail::ContactReducer> reducer_;
 };

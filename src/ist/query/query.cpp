@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <limits>
+#include <utility>
 
 #include "ist/base/access.h"
 #include "ist/base/float_environment.h"
@@ -114,6 +115,7 @@ const char* to_string(QueryStatus status) noexcept {
 Query::Query(const SphereTree& fixed, const SphereTree& moving, const QueryOptions& options)
     : state_(
           std::make_unique<detail::QueryState>(fixed, moving, options, ScopedFloatEnvironment())) {}
+Query::Query(std::unique_ptr<detail::QueryState> state) noexcept : state_(std::move(state)) {}
 Query::~Query() = default;
 Query::Query(Query&&) noexcept = default;
 Query& Query::operator=(Query&&) noexcept = default;
@@ -292,11 +294,11 @@ void Query::forget() noexcept {
   detail::QueryState& s = *state_;
   const detail::Use use(s);
   if (!use) return;
-  if (s.triangles) s.triangles->forget();
+  if (s.triangles) s.triangles->witnesses() = {};
   if (s.cached) s.cached->forget();
 }
 
-bool Query::has_triangles() const noexcept { return state_->triangles.has_value(); }
+bool Query::has_triangles() const noexcept { return state_->triangles != nullptr; }
 const SphereTree& Query::fixed() const noexcept { return state_->fixed; }
 const SphereTree& Query::moving() const noexcept { return state_->moving; }
 SpherePolicy Query::policy() const noexcept { return state_->policy; }

@@ -239,6 +239,7 @@ class IST_API Query {
 
  private:
   friend struct detail::Access;
+  explicit Query(std::unique_ptr<detail::QueryState> state) noexcept;
 
   std::unique_ptr<detail::QueryState> state_;
 };

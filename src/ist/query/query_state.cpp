@@ -26,14 +26,14 @@ CacheOptions coherent_options(const QueryOptions& options) {
   return {options.frontier_pairs, options.front_pairs, options.workers, options.period};
 }
 
-TriangleOptions triangle_options(const QueryOptions& options) {
-  return {options.workers, options.period, options.near_pairs};
+TriangleOptions triangle_options(const QueryOptions& options, const QueryRoom& room) {
+  return {options.workers, options.period, options.near_pairs, room.cluster_items};
 }
 
 // Returns the bytes that a query with such a plan reserves. Throws kArgumentInvalid for an option
 // out of range.
 std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const SphereTree& moving,
-                       const QueryOptions& options) {
+                       const QueryOptions& options, const QueryRoom& room) {
   if (options.workers != 1 && options.workers != 2) {
     throw_error(ErrorCode::kArgumentInvalid, "query option workers is {}: give 1 or 2",
                 options.workers);
@@ -44,14 +44,15 @@ std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const Sp
     throw_error(ErrorCode::kArgumentInvalid, "query option {} is {}: {} is the most", name, pairs,
                 kMostItems);
   }
-  std::size_t bytes = (options.workers == 2 ? SharedSearch::bytes_for(plan, options.frontier_pairs)
-                                            : Search::bytes_for(plan, options.frontier_pairs)) +
-                      (kWindow + kLeafPairSpare) * sizeof(LeafPair);
+  std::size_t bytes =
+      (options.workers == 2 ? SharedSearch::bytes_for(plan, options.frontier_pairs)
+                            : Search::bytes_for(plan, options.frontier_pairs, room.search_items)) +
+      (kWindow + kLeafPairSpare) * sizeof(LeafPair);
   if (options.front_pairs > 0) {
     bytes += CachedSearch::bytes_for(plan, coherent_options(options));
   }
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    bytes += TriangleSearch::bytes_for(fixed, moving, triangle_options(options));
+    bytes += TriangleSearch::bytes_for(fixed, moving, triangle_options(options, room));
   }
   return bytes;
 }
@@ -75,31 +76,52 @@ DistanceInterval narrowed(const Approach& bodies, const DistanceBounds& bounds, 
 }  // namespace
 
 QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tree,
-                       const QueryOptions& options, const ScopedFloatEnvironment&)
+                       const QueryOptions& options, const ScopedFloatEnvironment&,
+                       const QueryRoom& room)
     : fixed(comparable(fixed_tree, moving_tree)),
       moving(moving_tree),
+      wanted_policy(options.policy),
       policy(policy_of(fixed, moving, options)),
       kernels(select_kernels(options.target)),
       plan(fixed, moving, policy),
-      bytes(bytes_with(plan, fixed, moving, options)) {
+      bytes(bytes_with(plan, fixed, moving, options, room)) {
   if (options.workers == 2) {
     searches.emplace<SharedSearch>(plan, kernels, options.frontier_pairs, options.period);
   } else {
-    searches.emplace<Search>(plan, kernels, options.frontier_pairs);
+    searches.emplace<Search>(plan, kernels, options.frontier_pairs, room.search_items);
   }
   if (options.front_pairs > 0) {
-    cached.emplace(fixed, moving, policy, plan, kernels, coherent_options(options));
+    cached = &own_cache.emplace(fixed, moving, policy, plan, kernels, coherent_options(options));
   }
   window.resize(kWindow + kLeafPairSpare);
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    triangles.emplace(fixed, moving, kernels, triangle_options(options));
+    triangles = &own_triangles.emplace(fixed, moving, kernels, triangle_options(options, room));
   }
 }
 
 std::size_t QueryState::bytes_for(const SphereTree& fixed, const SphereTree& moving,
-                                  const QueryOptions& options) {
+                                  const QueryOptions& options, const QueryRoom& room) {
   const SearchPlan plan(fixed, moving, policy_of(fixed, moving, options));
-  return bytes_with(plan, fixed, moving, options);
+  return bytes_with(plan, fixed, moving, options, room);
+}
+
+void QueryState::bind(const SphereTree& fixed_tree, const TreeFacts& of_fixed,
+                      const SphereTree& moving_tree, const TreeFacts& of_moving,
+                      bool of_leaves) noexcept {
+  if (&parts_of(fixed_tree) != &parts_of(fixed) || &parts_of(moving_tree) != &parts_of(moving)) {
+    fixed = fixed_tree;
+    moving = moving_tree;
+    policy = wanted_policy.value_or(std::min(fixed.tightest(), moving.tightest()));
+    has_plan = false;
+    const bool both = fixed.triangles() != nullptr && moving.triangles() != nullptr;
+    triangles = both && own_triangles ? &*own_triangles : nullptr;
+    if (both) triangles->bind(fixed, of_fixed.triangles, moving, of_moving.triangles);
+  }
+  if (triangles != nullptr) triangles->witnesses() = {};
+  if (has_plan || !(of_leaves || triangles == nullptr)) return;
+  plan.bind(fixed, of_fixed.shape, moving, of_moving.shape, policy);
+  std::get_if<Search>(&searches)->bind();
+  has_plan = true;
 }
 
 double QueryState::triangle_error(const Eigen::Isometry3d& pose) const noexcept {

@@ -33,6 +33,22 @@ struct Approach {
           .rotation_error = rotation_error(pose)};
 }
 
+/// Numbers of a tree that take time to measure.
+struct TreeFacts {
+  explicit TreeFacts(const SphereTree& tree)
+      : shape(tree), triangles(TriangleLengths::of(tree)), box(MotionBound::box_of(tree)) {}
+
+  TreeShape shape;
+  TriangleLengths triangles;
+  MotionBound::Box box;
+};
+
+/// The least lengths of the lists of a query, for pairs of trees that it is bound to later.
+struct QueryRoom {
+  std::size_t search_items = 0;   ///< Search::items_for()
+  std::size_t cluster_items = 0;  ///< ClusterSearch::items_for()
+};
+
 /// Returns whether a length may be the margin of a query.
 [[nodiscard]] inline bool is_margin(double margin) noexcept {
   return margin >= 0 && margin < std::numeric_limits<double>::infinity();
@@ -41,12 +57,21 @@ struct Approach {
 /// The memory of a Query, and the steps that its verbs share.
 struct QueryState {
   QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tree,
-             const QueryOptions& options, const ScopedFloatEnvironment& environment);
+             const QueryOptions& options, const ScopedFloatEnvironment& environment,
+             const QueryRoom& room = {});
+
+  /// Asks two other trees from now on, without what earlier questions left. Allocates nothing.
+  /// Preconditions: the query has one worker, no pair cache of its own, and room for the trees.
+  ///
+  /// @param of_leaves whether the next question may search leaves: else binding takes less time
+  void bind(const SphereTree& fixed_tree, const TreeFacts& of_fixed, const SphereTree& moving_tree,
+            const TreeFacts& of_moving, bool of_leaves) noexcept;
 
   /// Returns the bytes that the memory of a query takes. Throws the same errors as the constructor.
   [[nodiscard]] IST_LOOP_API static std::size_t bytes_for(const SphereTree& fixed,
                                                           const SphereTree& moving,
-                                                          const QueryOptions& options);
+                                                          const QueryOptions& options,
+                                                          const QueryRoom& room = {});
   /// Returns the policy of a query of two trees.
   [[nodiscard]] static SpherePolicy policy_of(const SphereTree& fixed, const SphereTree& moving,
                                               const QueryOptions& options) noexcept {
@@ -95,15 +120,19 @@ struct QueryState {
   void nearest_leaves(const Approach& bodies, double tolerance, const Budget& budget,
                       DistanceResult& result) noexcept;
 
-  const SphereTree fixed, moving;  // which share the content
+  SphereTree fixed, moving;  // which share the content
+  const std::optional<SpherePolicy> wanted_policy;
   SpherePolicy policy;
   const Kernels& kernels;
   SearchPlan plan;
+  bool has_plan = true;  // of these trees
   std::size_t bytes;
   std::variant<std::monostate, Search, SharedSearch> searches;  // made after the plan it refers to
-  std::optional<CachedSearch> cached;
-  std::optional<TriangleSearch> triangles;
-  std::vector<LeafPair> window;  // the leaf pairs that a stream is given at once
+  std::optional<CachedSearch> own_cache;
+  CachedSearch* cached = nullptr;  // the own one, or one that a World keeps for the pair
+  std::optional<TriangleSearch> own_triangles;
+  TriangleSearch* triangles = nullptr;  // null if a tree has no triangles
+  std::vector<LeafPair> window;         // the leaf pairs that a stream is given at once
   std::atomic_flag in_use;
 };
 

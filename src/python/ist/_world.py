@@ -20,13 +20,13 @@ from ._c import (
     WorldResult,
 )
 from ._errors import check, error_of, need_word, refuse
-from ._follow import Follower
 from ._handle import Lone, Out
 from ._library import LIBRARY
 from ._query import options_of
 from ._tree import need_tree
 
 _ask = LIBRARY.ist_world_ask
+ALL_PAIRS = 2**64 - 1
 # The questions, by their names: the library's number, and the dtype of the pairs that it fills an array with.
 QUESTIONS = {
     "near_pairs": (_c.IST_ASK_NEAR, None),
@@ -46,14 +46,15 @@ class World(Lone):
     NOT_PREPARED or POSE_INVALID; all other pairs are apart, by more than `reach`. Of a pair the body added first is the fixed
     one. `tests` and `seconds` limit a whole call. A world belongs to one thread at a time: another one gets a BusyError.
 
-    reach: pairs whose root bounds are no farther apart are near too, mesh units. most_near: rows beyond those of prepared pairs.
-    max_memory: bytes. All else as of Query, of each pair; contacts=-1: the sums alone.
+    reach: pairs whose root bounds are no farther apart are near too, mesh units. threads: threads that ask pairs; the answer does
+    not depend on it. pair_caches: most pairs that have a pair cache at a time, with front_pairs. max_memory: bytes. All else as
+    of Query, for all pairs; contacts=-1: the sums alone.
 
     >>> import ist, numpy as np
     >>> upper, lower = (ist.build(jaw, voxel_size=0.8) for jaw in ist.jaws())
     >>> world = ist.World()
     >>> a, b = world.add(upper, name="upper"), world.add(lower, name="lower")
-    >>> world.prepare()
+    >>> world.reserve()
     >>> row = world.intersects().pairs[0]
     >>> int(row["a"]), int(row["b"]), bool(row["answer"] == ist.YES)
     (0, 1, True)
@@ -77,7 +78,8 @@ class World(Lone):
         frontier_pairs=0,
         target=None,
         reach=0.0,
-        most_near=4096,
+        threads=1,
+        pair_caches=16,
         max_memory=4 << 30,
     ):
         query = options_of(spheres, 1, contacts, margin, front_pairs, target)
@@ -85,15 +87,16 @@ class World(Lone):
         options = WorldOptions(
             query=pointer(query),
             reach=number_of(reach, "reach"),
-            most_near=count_of(most_near, "most_near", least=1),
+            pair_caches=count_of(pair_caches, "pair_caches", least=1),
             max_memory=count_of(max_memory, "max_memory", least=1),
+            threads=count_of(threads, "threads", _c.IST_MOST_THREADS, least=1),
         )
         out = Out()
         check(LIBRARY.ist_world_create(addressof(options), out.address))
         super().__init__(out.handle)
         self._contacts = max(query.contacts, 0)
         self._trees, self._names = [], []
-        self._prepared, self._most_near = 0, options.most_near
+        self._reserved = 0
         self._question, self._found = WorldQuestion(), WorldResult()
         self._question_at, self._found_at = addressof(self._question), addressof(self._found)
         self._least = LeastDistanceResult()
@@ -104,7 +107,7 @@ class World(Lone):
 
     @property
     def nbytes(self):
-        """Memory reserved for queries, contacts and answers, bytes."""
+        """The bytes that reserve() took."""
         info = WorldInfo()
         self._call(LIBRARY.ist_world_get_info, addressof(info))
         return info.bytes
@@ -118,7 +121,7 @@ class World(Lone):
             self._lock.release()
 
     def add(self, tree, pose=None, name=None):
-        """Adds a body and returns its number. prepare() has to follow.
+        """Adds a body and returns its number. reserve() has to follow.
 
         p_world = pose @ p_body; without a pose the body is where its mesh is.
         """
@@ -136,31 +139,26 @@ class World(Lone):
         return body.value
 
     def ignore(self, a, b):
-        """Never looks at a pair of bodies again, and frees its memory."""
+        """Never looks at a pair of bodies again."""
         self._call(LIBRARY.ist_world_ignore, self._body(a, "a"), self._body(b, "b"))
 
-    def bytes_needed(self, pairs=None):
-        """The bytes that prepare(pairs) takes in all."""
-        some, place, count = self._pairs(pairs)
+    def bytes_needed(self, near_pairs=None):
+        """The bytes that reserve(near_pairs) takes."""
         needed = c_uint64()
-        self._call(LIBRARY.ist_world_bytes_needed, place, count, addressof(needed))
+        self._call(LIBRARY.ist_world_bytes_needed, self._count(near_pairs), addressof(needed))
         return needed.value
 
-    def prepare(self, pairs=None, *, progress=None):
-        """Reserves a query for each of these pairs of bodies, (N, 2); without them, for all that are not ignored.
+    def reserve(self, near_pairs=None):
+        """Reserves memory for all bodies, and for so many pairs that are near at a time; without a number, for all pairs.
 
-        Pairs that had one and are among them keep it, with what it knows; others lose it. Raises MemoryLimitError, which names
-        the pair that was too much; the world is then as it was. progress: called with the part of the pairs that is done; what
-        it raises ends the call, and leaves the world as it was unless all pairs were done.
+        If more pairs are near, an answer has rows for the first of them. Frees what was reserved before, and forgets earlier
+        questions. Raises MemoryLimitError; the world is then as it was.
         """
-        some, place, count = self._pairs(pairs)
+        count = self._count(near_pairs)
         handle = self._enter()
         try:
-            with Follower(progress) as follower:
-                status = LIBRARY.ist_world_prepare(handle, place, count, follower.address)
-                if status == 0:  # whatever finish() raises
-                    self._prepared = self._all_pairs() if pairs is None else count
-                follower.finish(status)
+            check(LIBRARY.ist_world_reserve(handle, count))
+            self._reserved = max(1, min(count, self._all_pairs()))
         finally:
             self._lock.release()
 
@@ -210,7 +208,7 @@ class World(Lone):
             asked.triangles, asked.triangle_capacity = (place, length) if dtype is TRIANGLE_PAIR else (None, 0)
             at = None if out is None else place_of(out, WORLD_PAIR)
             if out is None or keep:
-                rows = np.empty(min(self._all_pairs(), self._prepared + self._most_near), WORLD_PAIR)
+                rows = np.empty(self._reserved, WORLD_PAIR)
                 at = address(rows)
             if keep:
                 self._felt = rows[:0]
@@ -299,7 +297,7 @@ class World(Lone):
             self._lock.release()
 
     def forget(self):
-        """Forgets what earlier poses left behind in the queries."""
+        """Forgets what earlier poses left behind."""
         self._call(LIBRARY.ist_world_forget)
 
     def _all_pairs(self):
@@ -309,26 +307,10 @@ class World(Lone):
     def _body(number, what):
         return count_of(number, what, 0xFFFFFFFF)
 
-    # The pairs of a caller, with their place and number; NULL for all.
+    # A number of near pairs; None for all.
     @staticmethod
-    def _pairs(pairs):
-        if pairs is None:
-            return None, None, 0
-        try:
-            some = np.asarray(pairs)
-        except ValueError as error:  # rows of different lengths
-            refuse(f"pairs: {error}: pass whole numbers, (N, 2)")
-        if some.size == 0:
-            some = np.empty((0, 2), np.uint32)
-        if some.dtype.kind not in "iu" or some.ndim != 2 or some.shape[1] != 2:
-            refuse(f"pairs is {some.dtype}, {some.shape}: pass whole numbers, (N, 2)")
-        if (some < 0).any() or (some > 0xFFFFFFFF).any():
-            refuse("pairs has a number that no body has: pass numbers that add() returned")
-        numbers = np.ascontiguousarray(some, dtype=np.uint32)
-        count = len(numbers)
-        if count == 0:
-            numbers = np.zeros((1, 2), np.uint32)  # some place, since NULL means all
-        return numbers, address(numbers), count
+    def _count(near_pairs):
+        return ALL_PAIRS if near_pairs is None else count_of(near_pairs, "near_pairs")
 
     def __repr__(self):
         if self._handle is None:

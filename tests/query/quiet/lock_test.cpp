@@ -126,7 +126,6 @@ TEST(Locks, AnExactAnswerAsksForNone) {
   static_assert(noexcept(world.distance(0.0, budget)));
   static_assert(noexcept(world.forget()));
   static_assert(noexcept(world.pose_of(0, 1)));
-  static_assert(noexcept(world.query(0, 1)));
 }
 
 [[maybe_unused]] void parts_of_a_tick(Simulation& simulation, ServoCallback& callback,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdint>
+#include <thread>
 #include <vector>
 
 #include "ist/query/workers/resident_worker.h"
@@ -21,18 +22,18 @@
 namespace ist::test {
 namespace {
 
-/// Balls in a row, each near the next: most of them prepared, one pair ignored.
-inline World row_of_balls() {
+/// Balls in a row, each near the next: one pair ignored, and memory for some.
+inline World row_of_balls(std::size_t threads = 1) {
   WorldOptions options;
   options.query.frontier_pairs = 1 << 10;
   options.query.front_pairs = 1 << 10;
+  options.pair_caches = 4;
+  options.threads = threads;
   World world(options);
   const SphereTree ball = triangle_tree(icosphere(2, 1), 10);
   for (int i = 0; i < 12; ++i) world.add(ball, shift({1.8 * i, 0, 0}));
   world.ignore(0, 1);
-  std::vector<BodyPair> some;
-  for (BodyIndex i = 1; i < 11; ++i) some.push_back({i, i + 1});
-  world.prepare(some);
+  world.reserve(9);
   return world;
 }
 
@@ -229,22 +230,30 @@ TEST_F(SystemCalls, ACallerWithASecondWorkerMakesNone) {
 // A world is as quiet as its queries.
 
 TEST(Allocations, AWorldMakesNone) {
-  World world = row_of_balls();
-  std::vector<LeafPair> leaves(1 << 10);
-  std::vector<TrianglePair> triangles(1 << 10);
-  const std::uint64_t before = allocations();
-  const std::uint64_t found = ask_everything(world, leaves, triangles);
-  EXPECT_EQ(allocations() - before, 0u);
-  EXPECT_GT(found, 10000u);
+  for (const std::size_t threads : {1u, 2u}) {
+    World world = row_of_balls(threads);
+    std::vector<LeafPair> leaves(1 << 10);
+    std::vector<TrianglePair> triangles(1 << 10);
+    // A thread allocates when it begins.
+    for (int k = 0; threads > 1 && k < 1000 && !ResidentWorker::is_there(); ++k) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    const std::uint64_t before = allocations();
+    const std::uint64_t found = ask_everything(world, leaves, triangles);
+    EXPECT_EQ(allocations() - before, 0u);
+    EXPECT_GT(found, 10000u);
+  }
 }
 
 TEST(Locks, AWorldAsksForNone) {
-  World world = row_of_balls();
-  std::vector<LeafPair> leaves(1 << 10);
-  std::vector<TrianglePair> triangles(1 << 10);
-  const std::uint64_t before = locks();
-  static_cast<void>(ask_everything(world, leaves, triangles));
-  EXPECT_EQ(locks() - before, 0u);
+  for (const std::size_t threads : {1u, 2u}) {
+    World world = row_of_balls(threads);
+    std::vector<LeafPair> leaves(1 << 10);
+    std::vector<TrianglePair> triangles(1 << 10);
+    const std::uint64_t before = locks();
+    static_cast<void>(ask_everything(world, leaves, triangles));
+    EXPECT_EQ(locks() - before, 0u);
+  }
 }
 
 }  // namespace

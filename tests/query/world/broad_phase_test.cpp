@@ -93,7 +93,7 @@ TEST(BroadPhase, HoldsPairsWhoseRootsTouchToTheLastBit) {
     const Eigen::Vector3d away = random.direction();
     world.add(a, first);
     world.add(b, first);
-    world.prepare({});
+    world.reserve();
     const auto pose_at = [&](double t) {
       world.set_pose(1, pose_of(turned, first.translation() + t * away));
       return *world.pose_of(0, 1);

@@ -25,7 +25,7 @@ WorldOptions small_world() {
 World world_of(const std::vector<PlacedTree>& bodies, const WorldOptions& options) {
   World world(options);
   for (const auto& [tree, pose] : bodies) world.add(tree, pose);
-  world.prepare();
+  world.reserve();
   return world;
 }
 

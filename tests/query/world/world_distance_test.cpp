@@ -4,6 +4,7 @@
 #include <chrono>
 #include <limits>
 
+#include "ist/mesh/nearest_point.h"
 #include "ist/tree/tree_parts.h"
 #include "query/test_clocks.h"
 #include "query/triangles/mesh_distance.h"
@@ -54,6 +55,16 @@ TEST(WorldDistance, HoldsTheLeastOfAllPairs) {
       ASSERT_TRUE(found.nearest);
       EXPECT_LE(distance_of(world, bodies, *found.nearest), found.distance.upper + kRounding);
       for (const WorldPair& pair : found.pairs) {
+        if (pair.nearest) {  // the points are in the world, as far apart as the triangles
+          const NearPair& at = *pair.nearest;
+          EXPECT_NEAR((at.moving_point - at.fixed_point).norm(), at.distance, kRounding);
+          const Eigen::Vector3d p = bodies[pair.bodies.b].pose.inverse() * at.moving_point;
+          const TriangleMesh& mesh = parts_of(bodies[pair.bodies.b].tree).triangles->mesh;
+          const Triangle& t = mesh.triangles[at.triangles.moving];
+          const NearestPoint on_it = nearest_on_triangle(
+              {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]}, p);
+          EXPECT_LT((on_it.point - p).norm(), kRounding);
+        }
         EXPECT_LE(outside(pair.distance, distance_of(world, bodies, pair.bodies)), kRounding);
         EXPECT_LE(outside(pair.roots, distance_of(world, bodies, pair.bodies)), kRounding);
       }
@@ -65,49 +76,14 @@ TEST(WorldDistance, HoldsTheLeastOfAllPairs) {
   EXPECT_GT(unasked, least(400, 40));  // most pairs are left out by their roots
 }
 
-// The same with some pairs that were not prepared: they count with their roots.
-TEST(WorldDistance, CountsPairsThatWereNotPrepared) {
-  int wide = 0;
-  for (std::uint64_t seed = 0; seed < samples(std::uint64_t{20}) && !::testing::Test::HasFailure();
-       ++seed) {
-    SCOPED_TRACE(seed);
-    Random random(seed);
-    const std::vector<PlacedTree> bodies = scattered(random, 6, 8);
-    World world(small_world());
-    for (const auto& [tree, pose] : bodies) world.add(tree, pose);
-    const BodyPair some[] = {{0, 1}, {2, 3}, {1, 4}};
-    world.prepare(some);
-    double truth = HUGE_VAL;
-    for (BodyIndex a = 0; a < 6; ++a) {
-      for (BodyIndex b = a + 1; b < 6; ++b) {
-        truth = std::min(truth, distance_of(world, bodies, {a, b}));
-      }
-    }
-    const WorldDistance found = world.distance(1e-3);
-    EXPECT_LE(outside(found.distance, truth), kRounding);
-    wide += found.complete ? 0 : 1;
-    for (const WorldPair& pair : found.pairs) {
-      const bool prepared = world.query(pair.bodies.a, pair.bodies.b) != nullptr;
-      EXPECT_EQ(pair.status, prepared ? QueryStatus::kDone : QueryStatus::kNotPrepared);
-      if (prepared) continue;
-      EXPECT_EQ(pair.distance.lower, pair.roots.lower);
-      EXPECT_EQ(pair.distance.upper, pair.roots.upper);
-    }
-  }
-  EXPECT_GT(wide, least(10, 0));
-}
-
 // With memory for a few pairs, the roots of the other pairs give the least distance.
 TEST(WorldDistance, CountsPairsThatHaveNoRoom) {
   Random random(1);
   for (int turn = 0; turn < samples(20) && !::testing::Test::HasFailure(); ++turn) {
     std::vector<PlacedTree> bodies = scattered(random, 9, 4);
-    WorldOptions options = small_world();
-    options.most_near = turn % 2 == 0 ? 1 : 0;
-    World world(options);
+    World world(small_world());
     for (const auto& [tree, pose] : bodies) world.add(tree, pose);
-    const BodyPair one{0, 1};
-    world.prepare({&one, turn % 4 < 3 ? 1u : 0u});
+    world.reserve(1 + static_cast<std::size_t>(turn % 2));
     const WorldDistance found = world.distance(1e-3);
     EXPECT_LE(found.pairs.size(), 2u);
     EXPECT_GE(found.pairs.size(), 1u);
@@ -147,7 +123,7 @@ TEST(WorldDistance, IsOfTheOthersWhereABodyHasNoPose) {
   const SphereTree ball = triangle_tree(icosphere(2, 1), 8);
   World world(small_world());
   for (const double x : {0.0, 3.0, 2.5}) world.add(ball, shift({x, 0, 0}));
-  world.prepare();
+  world.reserve();
   Eigen::Isometry3d bad = Eigen::Isometry3d::Identity();
   bad.matrix()(3, 3) = 2;
   world.set_pose(2, bad);
@@ -168,10 +144,10 @@ class WorldBudget : public ::testing::Test {
  protected:
   // Balls in a row, each touching the next.
   WorldBudget() : world_(small_world()) {
-    const SphereTree ball = triangle_tree(icosphere(3, 1), 24);
-    for (int i = 0; i < 5; ++i) world_.add(ball, shift({1.9 * i, 0, 0}));
-    world_.prepare();
+    for (int i = 0; i < 5; ++i) world_.add(ball_, shift({1.9 * i, 0, 0}));
+    world_.reserve();
   }
+  const SphereTree ball_ = triangle_tree(icosphere(3, 1), 24);
   World world_;
   std::vector<LeafPair> leaf_pairs_ = std::vector<LeafPair>(1 << 16);
   std::vector<TrianglePair> triangles_ = std::vector<TrianglePair>(1 << 16);
@@ -191,8 +167,7 @@ TEST_F(WorldBudget, OfTestsIsOneForAllPairs) {
     std::uint64_t spent = 0;
     for (const WorldPair& pair : answer.pairs) {
       // The same answer as from a fresh query with the rest of the budget.
-      Query fresh(world_.query(pair.bodies.a, pair.bodies.b)->fixed(),
-                  world_.query(pair.bodies.a, pair.bodies.b)->moving(), small_world().query);
+      Query fresh(ball_, ball_, small_world().query);
       std::vector<LeafPair> out(1 << 16);
       const QueryResult expected = fresh.leaf_pairs(*world_.pose_of(pair.bodies.a, pair.bodies.b),
                                                     out, {.tests = tests - std::min(tests, spent)});

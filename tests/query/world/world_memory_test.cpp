@@ -39,115 +39,66 @@ TEST_F(WorldMemory, IsAskedForBeforeItIsReserved) {
           options.query.frontier_pairs = frontier_pairs;
           options.manifold.points = points;
           World world = world_of_trees(options);
-          const std::uint64_t needed = world.bytes_needed();
           EXPECT_EQ(world.bytes(), 0u);
-          for (BodyIndex a = 0; a < 3; ++a) {
-            for (BodyIndex b = a + 1; b < 3; ++b) {
-              const Query query(trees()[a], trees()[b], options.query);
-              const ContactManifold manifold(trees()[a], trees()[b], policy, options.manifold);
-              EXPECT_EQ(world.bytes_for(b, a), query.bytes() + manifold.bytes());
-            }
+          std::uint64_t last = 0;
+          for (const std::size_t near_pairs : {std::size_t{1}, std::size_t{2}, kAllPairs}) {
+            const std::uint64_t needed = world.bytes_needed(near_pairs);
+            world.reserve(near_pairs);
+            EXPECT_EQ(world.bytes(), needed);
+            EXPECT_GT(needed, last);
+            last = needed;
           }
-          world.prepare();
-          EXPECT_EQ(world.bytes(), needed);
-          EXPECT_EQ(world.bytes_needed(), needed);
+          EXPECT_EQ(world.bytes_needed(3), last);
+          EXPECT_EQ(world.bytes_needed(0), world.bytes_needed(1));
         }
       }
     }
   }
 }
 
-TEST_F(WorldMemory, BeyondTheLimitNamesThePair) {
+// One query a thread, whatever the number of bodies.
+TEST_F(WorldMemory, GrowsWithThreadsAndPairCaches) {
   WorldOptions options = small_world();
-  World roomy(options);
-  const char* const names[] = {"upper jaw", "lower jaw", "plate"};
-  std::size_t at = 0;
-  for (const SphereTree& tree : trees()) roomy.add(tree, shift({1.5, 0, 0}), names[at++]);
-  const std::uint64_t all = roomy.bytes_needed();
-  const BodyPair first_two[] = {{0, 1}, {2, 0}};
-  const std::uint64_t two = roomy.bytes_needed(first_two);
-  EXPECT_LT(two, all);
-  for (const std::uint64_t limit : {all - 1, two, two - 1, std::uint64_t{0}}) {
+  const auto needed = [&] { return world_of_trees(options).bytes_needed(3); };
+  const std::uint64_t one = needed();
+  options.threads = 3;
+  const std::uint64_t three = needed();
+  options.threads = 2;
+  EXPECT_EQ(three - needed(), needed() - one);
+  options.threads = 1;
+  options.query.front_pairs = 1000;
+  options.pair_caches = 0;
+  EXPECT_EQ(needed(), one);
+  options.pair_caches = 2;
+  EXPECT_GT(needed(), one + 2 * 1000 * 68);
+}
+
+TEST_F(WorldMemory, BeyondTheLimitIsRefused) {
+  WorldOptions options = small_world();
+  World world = world_of_trees(options);
+  const std::uint64_t all = world.bytes_needed(), one = world.bytes_needed(1);
+  EXPECT_LT(one, all);
+  for (const std::uint64_t limit : {all - 1, one, one - 1, std::uint64_t{0}}) {
     options.max_memory = limit;
-    World world(options);
-    at = 0;
-    for (const SphereTree& tree : trees()) world.add(tree, shift({1.5, 0, 0}), names[at++]);
-    const std::optional<Error> error = error_of([&] { world.prepare(); });
+    World small = world_of_trees(options);
+    const std::optional<Error> error = error_of([&] { small.reserve(); });
     ASSERT_TRUE(error);
     EXPECT_EQ(error->code(), ErrorCode::kMemoryLimit);
     const std::string text = error->what();
-    const auto has = [&](const char* part) { return text.find(part) != std::string::npos; };
-    EXPECT_TRUE(has("max_memory")) << text;
-    if (limit == 0) {
-      EXPECT_TRUE(has("answers of up to 3 pairs")) << text;
-    } else {
-      EXPECT_TRUE(has(limit >= two ? "'lower jaw' and 'plate'" : "'upper jaw' and 'plate'"))
-          << text;
-      EXPECT_TRUE(has(limit >= two ? "with 2 pairs before it" : "with 1 pair before it")) << text;
-      EXPECT_TRUE(has("prepare fewer pairs")) << text;
+    for (const char* const part : {"3 near pairs", "max_memory", "reserve for fewer pairs"}) {
+      EXPECT_NE(text.find(part), std::string::npos) << text;
     }
     // Nothing was made.
-    EXPECT_EQ(world.bytes(), 0u);
-    EXPECT_EQ(world.query(0, 1), nullptr);
-    EXPECT_EQ(world.ask(kIntersects).status, QueryStatus::kNotPrepared);
-    if (limit < two) continue;
-    // What fits can be prepared; and what was there stays where more does not fit.
-    world.prepare(first_two);
-    EXPECT_EQ(world.bytes(), two);
-    Query* const kept = world.query(0, 1);
-    ASSERT_NE(kept, nullptr);
-    EXPECT_EQ(error_name([&] { world.prepare(); }), "memory-limit");
-    EXPECT_EQ(world.query(0, 1), kept);
-    EXPECT_EQ(world.bytes(), two);
-    EXPECT_EQ(world.ask(kIntersects).status, QueryStatus::kDone);
+    EXPECT_EQ(small.bytes(), 0u);
+    EXPECT_EQ(small.ask(kIntersects).status, QueryStatus::kNotPrepared);
+    if (limit < one) continue;
+    // Fewer pairs can be reserved for, and these stay where more do not fit.
+    small.reserve(1);
+    EXPECT_EQ(small.bytes(), one);
+    EXPECT_EQ(error_name([&] { small.reserve(); }), "memory-limit");
+    EXPECT_EQ(small.bytes(), one);
+    EXPECT_EQ(small.ask(kIntersects).pairs.size(), 1u);
   }
-}
-
-// Queries are kept for reuse, with what they know; others go.
-TEST_F(WorldMemory, OfAPairThatIsPreparedAgainIsKept) {
-  World world = world_of_trees(small_world());
-  const BodyPair some[] = {{0, 1}, {1, 2}}, others[] = {{0, 1}, {0, 2}};
-  world.prepare(some);
-  const Query* const kept = world.query(1, 0);
-  ASSERT_NE(world.query(1, 2), nullptr);
-  world.prepare(others);
-  EXPECT_EQ(world.query(0, 1), kept);
-  EXPECT_EQ(world.query(1, 2), nullptr);
-  EXPECT_NE(world.query(0, 2), nullptr);
-  world.add(trees()[0]);
-  world.prepare(others);
-  EXPECT_EQ(world.query(0, 1), kept);
-  world.prepare({});
-  EXPECT_EQ(world.query(0, 1), nullptr);
-  EXPECT_EQ(world.ask(kNear).pairs[0].status, QueryStatus::kNotPrepared);
-}
-
-TEST_F(WorldMemory, IsAsItWasWhereItsCallerEndsThePreparation) {
-  World world = world_of_trees(small_world());
-  const BodyPair some[] = {{0, 1}};
-  world.prepare(some);
-  const Query* const kept = world.query(0, 1);
-  const std::uint64_t bytes = world.bytes();
-  int asked = 0, last = 0;
-  const Proceed proceed = [&](double part) {
-    EXPECT_EQ(part, asked / 3.0);
-    return asked++ != last;
-  };
-  for (last = 0; last < 3; ++last) {
-    asked = 0;
-    EXPECT_EQ(error_name([&] { world.prepare(std::nullopt, proceed); }), "cancelled");
-    EXPECT_EQ(asked, last + 1);
-    EXPECT_EQ(world.query(0, 1), kept);
-    EXPECT_EQ(world.query(0, 2), nullptr);
-    EXPECT_EQ(world.bytes(), bytes);
-  }
-  asked = 0;
-  world.prepare(std::nullopt, proceed);
-  EXPECT_EQ(asked, 3);
-  EXPECT_NE(world.query(1, 2), nullptr);
-  world.prepare(some, {});
-  EXPECT_EQ(world.query(0, 1), kept);
-  EXPECT_EQ(world.query(1, 2), nullptr);
 }
 
 TEST_F(WorldMemory, OutlivesTheTreesAndMoves) {
@@ -159,7 +110,7 @@ TEST_F(WorldMemory, OutlivesTheTreesAndMoves) {
     }
     return world;
   }();
-  first.prepare();
+  first.reserve();
   World second = std::move(first);
   EXPECT_EQ(second.ask(kIntersects).pairs.size(), 3u);
   first = World();
@@ -185,8 +136,13 @@ TEST_F(WorldMemory, MisuseThrows) {
     expect(refusal([&] { World{options}; }), "argument-invalid", "reach");
   }
   options = small_world();
-  options.most_near = kMostItems + 1;
-  expect(refusal([&] { World{options}; }), "argument-invalid", "most_near");
+  for (const std::size_t threads : {std::size_t{0}, kMostThreads + 1}) {
+    options.threads = threads;
+    expect(refusal([&] { World{options}; }), "argument-invalid", "threads is");
+  }
+  options = small_world();
+  options.query.front_pairs = kMostItems + 1;
+  expect(refusal([&] { World{options}; }), "argument-invalid", "front_pairs");
   options = small_world();
   options.query.target = "abacus";
   expect(refusal([&] { World{options}; }), "target-missing", "abacus");
@@ -199,11 +155,6 @@ TEST_F(WorldMemory, MisuseThrows) {
   EXPECT_EQ(world.name(2), "");
   expect(refusal([&] { world.ignore(0, 2); }), "argument-invalid", "body 2 is not there");
   expect(refusal([&] { world.ignore(0, 0); }), "argument-invalid", "'jaw'");
-  expect(refusal([&] { static_cast<void>(world.bytes_for(7, 0)); }), "argument-invalid", "body 7");
-  const BodyPair pair{1, 0}, wrong{0, 9};
-  expect(refusal([&] { world.prepare({&wrong, 1}); }), "argument-invalid", "body 9");
-  world.ignore(0, 1);
-  expect(refusal([&] { world.prepare({&pair, 1}); }), "argument-invalid", "'jaw' and 'body 1'");
   Eigen::Isometry3d bad = shift({0, 0, 0});
   bad.linear() *= 2;
   expect(refusal([&] { world.add(tree, bad, "scaled"); }), "pose-invalid", "'scaled'");
@@ -211,7 +162,6 @@ TEST_F(WorldMemory, MisuseThrows) {
   EXPECT_EQ(world.set_pose(2, shift({0, 0, 0})), QueryStatus::kNoSuchBody);
   EXPECT_STREQ(to_string(QueryStatus::kNoSuchBody), "no-such-body");
   EXPECT_FALSE(world.pose_of(0, 2));
-  EXPECT_EQ(world.query(0, 2), nullptr);
 
   const SphereTree loose =
       build_tree(icosphere(1, 1), {.voxel_size = 0.5, .spheres = SpherePolicy::kTable});
@@ -227,7 +177,7 @@ TEST_F(WorldMemory, MisuseThrows) {
   World margin(options);
   margin.add(tree);
   margin.add(tree);
-  expect(refusal([&] { margin.prepare(); }), "argument-invalid", "margin");
+  expect(refusal([&] { margin.reserve(); }), "argument-invalid", "margin");
 }
 
 TEST_F(WorldMemory, OfBodiesInDifferentFramesIsRefused) {

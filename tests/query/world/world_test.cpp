@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <numeric>
 
+#include "ist/base/error.h"
 #include "ist/base/pose.h"
 #include "ist/tree/tree_parts.h"
 #include "query/triangles/meeting_pairs.h"
@@ -132,10 +134,10 @@ TEST(World, ListsPairsInOrder) {
 TEST(World, DependsOnNoEarlierPose) {
   Random random(2);
   const std::vector<PlacedTree> bodies = scattered(random, 16, 3);
-  for (const std::size_t most_near : {std::size_t{1} << 12, std::size_t{0}}) {
+  for (const std::size_t near_pairs : {kAllPairs, std::size_t{20}}) {
     WorldOptions options = small_world();
-    options.most_near = most_near;
     World moved_about = world_of(bodies, options);
+    moved_about.reserve(near_pairs);
     for (int tick = 0; tick < 40; ++tick) {
       for (BodyIndex body = 0; body < 16; ++body) {
         // Along one axis after the other, so that bodies pass each other.
@@ -147,6 +149,7 @@ TEST(World, DependsOnNoEarlierPose) {
     }
     for (BodyIndex body = 0; body < 16; ++body) moved_about.set_pose(body, bodies[body].pose);
     World fresh = world_of(bodies, options);
+    fresh.reserve(near_pairs);
     const WorldAnswers expected = answers_of(fresh);
     EXPECT_GT(expected.pairs.size(), 10u);
     EXPECT_EQ(answers_of(moved_about), expected);
@@ -254,7 +257,7 @@ TEST(World, HoldsPosesFarAway) {
   World world(small_world());
   for (const double x : {1e308, 1e308, -1e308, 0.0, 1.5, 1e200, 1e154})
     world.add(ball, shift({x, x, x}));
-  world.prepare();
+  world.reserve();
   const auto answer = world.ask(kIntersects);
   ASSERT_NE(find(answer, {0, 1}), nullptr);
   EXPECT_EQ(find(answer, {0, 1})->status, QueryStatus::kDone);
@@ -265,7 +268,7 @@ TEST(World, HoldsPosesFarAway) {
   // Farther apart than a double tells.
   World ends(small_world());
   for (const double x : {1e308, -1e308}) ends.add(ball, shift({x, x, x}));
-  ends.prepare();
+  ends.reserve();
   EXPECT_TRUE(ends.ask(kIntersects).pairs.empty());
   const WorldDistance far = ends.distance(0.1);
   EXPECT_EQ(far.status, QueryStatus::kDone);
@@ -277,14 +280,11 @@ TEST(World, NeverLooksAtAPairThatIsIgnored) {
   World world(small_world());
   for (const double x : {0.0, 0.5, 1.0}) world.add(ball, shift({x, 0, 0}));
   world.ignore(2, 0);
-  world.prepare();
+  world.reserve();
   EXPECT_EQ(find(world.ask(kIntersects), {0, 2}), nullptr);
   EXPECT_EQ(world.ask(kIntersects).pairs.size(), 2u);
-  EXPECT_EQ(world.query(0, 2), nullptr);
-  const std::uint64_t before = world.bytes();
-  world.ignore(0, 1);  // after prepare() too
+  world.ignore(0, 1);  // after reserve() too
   EXPECT_EQ(world.ask(kIntersects).pairs.size(), 1u);
-  EXPECT_EQ(before - world.bytes(), world.bytes_for(0, 1));
   world.ignore(1, 2);
   Eigen::Isometry3d bad = shift({kNan, 0, 0});
   world.set_pose(1, bad);
@@ -297,7 +297,7 @@ TEST(World, NeverLooksAtAPairThatIsIgnored) {
   EXPECT_EQ(none.distance.lower, std::numeric_limits<double>::max());
 }
 
-TEST(World, TellsOfPairsThatWereNotPrepared) {
+TEST(World, AsksNothingBeforeItIsReservedFor) {
   const SphereTree ball = triangle_tree(icosphere(2, 1), 8);
   World world(small_world());
   EXPECT_EQ(world.ask(kIntersects).status, QueryStatus::kNotPrepared);
@@ -305,49 +305,121 @@ TEST(World, TellsOfPairsThatWereNotPrepared) {
   EXPECT_EQ(world.ask(kNear).status, QueryStatus::kNotPrepared);
   EXPECT_EQ(world.distance(0.1).status, QueryStatus::kNotPrepared);
   EXPECT_EQ(world.distance(0.1).distance.upper, HUGE_VAL);
-  const BodyPair first{1, 0};
-  world.prepare({&first, 1});
-  const auto answer = world.ask(kIntersects);
-  EXPECT_EQ(answer.status, QueryStatus::kDone);
-  EXPECT_FALSE(answer.complete);
-  ASSERT_EQ(answer.pairs.size(), 2u);
-  EXPECT_EQ(answer.pairs[0].answer, ist::Answer::kYes);
-  EXPECT_EQ(answer.pairs[1].status, QueryStatus::kNotPrepared);
-  EXPECT_EQ(answer.pairs[1].status, QueryStatus::kNotPrepared);
-  EXPECT_STREQ(to_string(answer.pairs[1].status), "not-prepared");
-  EXPECT_EQ(answer.pairs[1].roots.lower, 0);
-  EXPECT_GT(answer.pairs[1].roots.upper, 3);
-  EXPECT_EQ(world.ask(kContacts).pairs[1].manifold, nullptr);
-  EXPECT_EQ(world.manifold(1, 2), nullptr);
-  EXPECT_NE(world.manifold(1, 0), nullptr);
-  // The pairs that are near can be prepared as they are listed.
-  std::vector<BodyPair> wanted;
-  for (const WorldPair& pair : world.ask(kNear).pairs) wanted.push_back(pair.bodies);
-  world.prepare(wanted);
+  EXPECT_STREQ(to_string(QueryStatus::kNotPrepared), "not-prepared");
+  world.reserve();
   EXPECT_TRUE(world.ask(kIntersects).complete);
   EXPECT_EQ(world.ask(kIntersects).pairs[1].answer, ist::Answer::kYes);
   world.add(ball, shift({9, 0, 0}));
   EXPECT_EQ(world.ask(kIntersects).status, QueryStatus::kNotPrepared);
 }
 
-TEST(World, ListsThePreparedPairsFirstWhereMoreAreNearThanFit) {
+TEST(World, LeavesPairsUnknownBeyondThoseReserved) {
   const SphereTree ball = triangle_tree(icosphere(2, 1), 8);
-  WorldOptions options = small_world();
-  options.most_near = 2;
-  World world(options);
+  World world(small_world());
   for (int i = 0; i < 6; ++i) world.add(ball, shift({0.1 * i, 0, 0}));
-  const BodyPair last[] = {{4, 5}, {2, 5}};
-  world.prepare(last);
+  world.reserve(4);
   const auto answer = world.ask(kIntersects);
+  EXPECT_EQ(answer.status, QueryStatus::kDone);
   EXPECT_TRUE(answer.truncated);
   EXPECT_FALSE(answer.complete);
   EXPECT_EQ(answer.near_pairs, 15u);
   std::vector<BodyPair> listed;
-  for (const auto& pair : answer.pairs) listed.push_back(pair.bodies);
-  EXPECT_EQ(listed, (std::vector<BodyPair>{{0, 1}, {0, 2}, {2, 5}, {4, 5}}));
-  EXPECT_EQ(answer.pairs[2].answer, ist::Answer::kYes);
+  for (const auto& pair : answer.pairs) {
+    listed.push_back(pair.bodies);
+    EXPECT_EQ(pair.answer, ist::Answer::kYes);
+  }
+  EXPECT_EQ(listed, (std::vector<BodyPair>{{0, 1}, {0, 2}, {0, 3}, {0, 4}}));
+  EXPECT_NE(world.ask(kContacts).pairs[3].manifold, nullptr);
+  EXPECT_NE(world.manifold(4, 0), nullptr);
+  EXPECT_EQ(world.manifold(0, 5), nullptr);
   // Pairs that are not listed count in the distance all the same.
   EXPECT_EQ(world.distance(0.1).distance.lower, 0);
+  // The count of near pairs says for how many to reserve.
+  world.reserve(answer.near_pairs);
+  EXPECT_TRUE(world.ask(kIntersects).complete);
+  EXPECT_EQ(world.ask(kIntersects).pairs.size(), 15u);
+}
+
+// One query serves pairs of all sizes, one after the other, and each pair has its own witnesses.
+TEST(World, AnswersAsEachPairsOwnQueryAlongAMotion) {
+  Random random(11);
+  std::vector<PlacedTree> bodies = scattered(random, 6, 3);
+  bodies.push_back({triangle_tree(icosphere(4, 1), 30), shift({1, 1, 1})});
+  bodies.push_back({without_triangles(triangle_tree(icosphere(2, 1), 12)), shift({2, 1, 1})});
+  WorldOptions options = small_world();
+  options.query.front_pairs = 4000;
+  options.pair_caches = 3;
+  World world = world_of(bodies, options);
+  const auto count = static_cast<BodyIndex>(bodies.size());
+  std::map<BodyPair, Query> queries;
+  for (BodyIndex a = 0; a < count; ++a) {
+    for (BodyIndex b = a + 1; b < count; ++b) {
+      queries.try_emplace({a, b}, bodies[a].tree, bodies[b].tree, options.query);
+    }
+  }
+  std::vector<LeafPair> out(1 << 18), of_one(1 << 18);
+  int kept = 0;
+  for (int tick = 0; tick < samples(40) && !::testing::Test::HasFailure(); ++tick) {
+    for (BodyIndex body = 0; body < count; ++body) {
+      bodies[body].pose.translation() += random.point(-0.005, 0.005);
+      world.set_pose(body, bodies[body].pose);
+    }
+    for (const WorldPair& pair : world.ask(kIntersects).pairs) {
+      Query& query = queries.at(pair.bodies);
+      const IntersectionResult own = query.intersects(*world.pose_of(pair.bodies.a, pair.bodies.b));
+      EXPECT_EQ(pair.answer, own.answer);
+    }
+    for (const WorldPair& pair : world.ask(distance_within(1e-3)).pairs) {
+      const DistanceResult own =
+          queries.at(pair.bodies).distance(*world.pose_of(pair.bodies.a, pair.bodies.b), 1e-3);
+      EXPECT_EQ(pair.complete, own.complete);
+      EXPECT_LE(pair.distance.lower, own.distance.upper);
+      EXPECT_LE(own.distance.lower, pair.distance.upper);
+    }
+    for (const WorldPair& pair : world.ask(leaf_pairs_in(out)).pairs) {
+      const QueryResult own =
+          queries.at(pair.bodies).leaf_pairs(*world.pose_of(pair.bodies.a, pair.bodies.b), of_one);
+      ASSERT_EQ(pair.written, own.leaf_pairs);
+      EXPECT_TRUE(std::equal(of_one.begin(),
+                             of_one.begin() + static_cast<std::ptrdiff_t>(pair.written),
+                             out.begin() + static_cast<std::ptrdiff_t>(pair.first)));
+      kept += pair.way != Found::kFresh ? 1 : 0;
+    }
+  }
+  EXPECT_GT(kept, least(20, 0));
+}
+
+// The memory grows with the pairs that are near at a time, and not with all pairs.
+TEST(World, HoldsAThousandBallsOfOneTree) {
+  const SphereTree ball = triangle_tree(icosphere(3, 1), 12);
+  World world;
+  for (int i = 0; i < 1000; ++i) {
+    const Eigen::Vector3d place(i % 10, i / 10 % 10, i / 100);
+    world.add(ball, shift(1.99 * place));
+  }
+  world.reserve(1 << 13);
+  EXPECT_EQ(world.bytes(), world.bytes_needed(1 << 13));
+  EXPECT_LT(world.bytes(), std::uint64_t{100} << 20);
+  const WorldAnswer answer = world.ask(kIntersects);
+  EXPECT_TRUE(answer.complete);
+  EXPECT_GE(answer.pairs.size(), 2700u);  // each with its neighbours along the axes
+  const std::uint64_t touching = static_cast<std::uint64_t>(
+      std::count_if(answer.pairs.begin(), answer.pairs.end(),
+                    [](const WorldPair& pair) { return pair.answer == ist::Answer::kYes; }));
+  EXPECT_EQ(touching, 2700u);
+}
+
+TEST(World, HoldsTheMostBodies) {
+  const SphereTree ball = triangle_tree(icosphere(1, 1), 4);
+  WorldOptions options = small_world();
+  options.manifold.points = 0;
+  World world(options);
+  for (BodyIndex i = 0; i < kMostBodies; ++i) world.add(ball, shift({3.0 * i, 0, 0}));
+  EXPECT_THROW(world.add(ball), Error);
+  world.reserve(kMostBodies);
+  EXPECT_LT(world.bytes(), std::uint64_t{16} << 20);
+  EXPECT_TRUE(world.ask(kIntersects).pairs.empty());
+  EXPECT_NEAR(world.distance(0.1).distance.lower, 1, 0.2);
 }
 
 TEST(World, ReachesFartherWhereItIsAskedTo) {
@@ -358,7 +430,7 @@ TEST(World, ReachesFartherWhereItIsAskedTo) {
     World world(options);
     world.add(ball);
     world.add(ball, shift({4, 0, 0}));
-    world.prepare();
+    world.reserve();
     const auto answer = world.ask(distance_within(1e-3));
     ASSERT_EQ(answer.pairs.size(), reach > 0 ? 1u : 0u);
     if (reach == 0) continue;

@@ -120,47 +120,73 @@ const SphereTree& with(const SphereTree& tree, SpherePolicy policy, const char* 
   return tree;
 }
 
-ContactScale scale_of(const SphereTree& fixed, const SphereTree& moving,
-                      const ManifoldOptions& options) {
+}  // namespace
+
+void ContactReducer::check(const ManifoldOptions& options) {
   require_in_range("points", static_cast<double>(options.points), double{kMostItems});
   require_in_range("max_leaves", static_cast<double>(options.max_leaves), double{kMostItems});
   require_in_range("margin", options.margin, 2);
   require_in_range("reach", options.reach, 1);
-  return ContactScale(fixed, moving, options.margin, options.reach);
 }
 
-}  // namespace
+ContactWork::ContactWork(const ManifoldOptions& options, std::size_t leaves) {
+  if (options.points == 0) return;
+  leaf_sums.emplace(leaves);
+  adder.stream = &*leaf_sums;
+}
 
 ContactReducer::ContactReducer(const SphereTree& fixed, const SphereTree& moving,
                                SpherePolicy policy, const ManifoldOptions& options,
                                const ScopedFloatEnvironment&)
-    : fixed_(with(fixed, policy, "fixed")),
-      moving_(with(moving, policy, "moving")),
+    : ContactReducer(with(fixed, policy, "fixed"), policy, options) {
+  bytes_ = bytes_for(fixed, moving, options);
+  own_ = std::make_unique<ContactWork>(options, most_leaves(fixed, options));
+  bind(fixed, with(moving, policy, "moving"), policy, *own_);
+}
+
+ContactReducer::ContactReducer(const SphereTree& any, SpherePolicy policy,
+                               const ManifoldOptions& options)
+    : fixed_(any),
+      moving_(any),
+      options_(options),
       policy_(policy),
-      scale_(scale_of(fixed, moving, options)),
-      rates_(contact_rates(fixed_, moving_, policy, scale_)),
-      bytes_(bytes_for(fixed, moving, options)),
-      adder_(std::make_unique<ContactAdder>()),
-      points_(options.points) {
-  adder_->rule = contact_rule(scale_, rates_.lever);
-  if (options.points > 0) {
-    leaf_sums_.emplace(parts_of(fixed_).octree, std::max<std::size_t>(options.max_leaves, 1));
-    adder_->stream = &*leaf_sums_;
+      scale_(any, any),
+      rates_{},
+      bytes_(options.points * sizeof(Contact)) {
+  check(options);
+  points_.resize(options.points);
+}
+
+void ContactReducer::bind(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+                          ContactWork& work) noexcept {
+  if (!fits(fixed, moving, policy)) {
+    fixed_ = fixed;
+    moving_ = moving;
+    policy_ = policy;
   }
-  sums_.about = fixed_.origin();
+  scale_ = ContactScale(fixed, moving, options_.margin, options_.reach);
+  rates_ = contact_rates(fixed, moving, policy, scale_);
+  work_ = &work;
+  work.adder.rule = contact_rule(scale_, rates_.lever);
+  if (work.leaf_sums) {
+    work.leaf_sums->bind(parts_of(fixed).octree, std::max<std::size_t>(options_.max_leaves, 1));
+  }
+  count_ = 0;
+  sums_ = {};
+  sums_.about = fixed.origin();
 }
 
 void ContactReducer::clear() noexcept {
-  adder_->clear();
-  if (leaf_sums_) leaf_sums_->clear();
+  work_->adder.clear();
+  if (work_->leaf_sums) work_->leaf_sums->clear();
   count_ = 0;
   sums_ = {};
   sums_.about = fixed_.origin();
 }
 
 void ContactReducer::finish(const RelativePose& pose, bool complete) noexcept {
-  const ContactRule& rule = adder_->rule;
-  const ContactTotals& totals = adder_->totals;
+  const ContactRule& rule = work_->adder.rule;
+  const ContactTotals& totals = work_->adder.totals;
   // The units are those that the kernels used, rounding and all.
   const double weight = scale_.area / kContactUnit, lever = 0.5 / double{rule.half_per_lever},
                range = 1 / double{rule.per_range};
@@ -179,19 +205,22 @@ void ContactReducer::finish(const RelativePose& pose, bool complete) noexcept {
   sums_.weight = weight * static_cast<double>(totals.sum[kWeightSum]);
   sums_.pressure = wrench(kForceSum, kTorqueSum, weight);
   sums_.spring = wrench(kSpringSum, kSpringTorqueSum, range * weight);
-  if (!leaf_sums_ || !complete) return;
-  leaf_sums_->close();
+  if (!work_->leaf_sums || !complete) return;
+  LeafSums& leaf_sums = *work_->leaf_sums;
+  leaf_sums.close();
   const LeafSumUnits units{weight, lever, scale_.least_depth(), scale_.size, pose, sums_.about};
-  count_ = cluster(*leaf_sums_, units, points_);
+  count_ = cluster(leaf_sums, units, points_);
 }
 
-std::size_t ContactReducer::bytes_for(const SphereTree& fixed, const SphereTree& moving,
+std::size_t ContactReducer::most_leaves(const SphereTree& fixed,
+                                        const ManifoldOptions& options) noexcept {
+  return std::min<std::size_t>(std::max<std::size_t>(options.max_leaves, 1), fixed.leaf_count());
+}
+
+std::size_t ContactReducer::bytes_for(const SphereTree& fixed, const SphereTree& /*moving*/,
                                       const ManifoldOptions& options) {
-  static_cast<void>(scale_of(fixed, moving, options));  // checks them
-  if (options.points == 0) return sizeof(ContactAdder);
-  return sizeof(ContactAdder) +
-         LeafSums::bytes_for(parts_of(fixed).octree, std::max<std::size_t>(options.max_leaves, 1)) +
-         options.points * sizeof(Contact);
+  check(options);
+  return bytes_of_work(options, most_leaves(fixed, options)) + options.points * sizeof(Contact);
 }
 
 }  // namespace ist::detail

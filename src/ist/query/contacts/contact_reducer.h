@@ -99,6 +99,16 @@ struct ContactScale {
 
 namespace ist::detail {
 
+/// The memory of a reduction: 80 kB, and with points the leaves. Several reducers may use it, one
+/// after the other.
+struct ContactWork {
+  /// Reserves the sums of at most `leaves` leaves if points are wanted.
+  ContactWork(const ManifoldOptions& options, std::size_t leaves);
+
+  ContactAdder adder;
+  std::optional<LeafSums> leaf_sums;
+};
+
 /// Reduces the leaf pairs of an answer to sums that are Lipschitz in the pose and to a few contacts
 /// (see cluster()).
 ///
@@ -120,15 +130,24 @@ class ContactReducer {
   ContactReducer(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                  const ManifoldOptions& options,
                  const ScopedFloatEnvironment& environment = ScopedFloatEnvironment());
+  /// Reserves the contacts alone. It works in memory of others, and bind() has to follow.
+  ContactReducer(const SphereTree& any, SpherePolicy policy, const ManifoldOptions& options);
   ContactReducer(const ContactReducer&) = delete;
   ContactReducer& operator=(const ContactReducer&) = delete;
+
+  /// Reduces leaf pairs of two other trees from now on. Allocates nothing. Precondition: `work` has
+  /// room for the leaves of the fixed tree.
+  void bind(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+            ContactWork& work) noexcept;
 
   /// Forgets the query before.
   void clear() noexcept;
   /// Returns the sums of the kernels, to which a query adds its leaf pairs in order.
-  [[nodiscard]] ContactAdder& adder() noexcept { return *adder_; }
+  [[nodiscard]] ContactAdder& adder() noexcept { return work_->adder; }
   /// Returns the sums by leaf, to which the adder's terms go, or null where no points are wanted.
-  [[nodiscard]] LeafSums* leaf_sums() noexcept { return leaf_sums_ ? &*leaf_sums_ : nullptr; }
+  [[nodiscard]] LeafSums* leaf_sums() noexcept {
+    return work_->leaf_sums ? &*work_->leaf_sums : nullptr;
+  }
   /// Makes sums of all that was added at a pose and, where that is complete, contacts.
   void finish(const RelativePose& pose, bool complete) noexcept;
 
@@ -150,6 +169,16 @@ class ContactReducer {
   }
   /// Returns the bytes reserved.
   [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
+  /// Returns the most leaves that are kept apart for a fixed tree.
+  [[nodiscard]] static std::size_t most_leaves(const SphereTree& fixed,
+                                               const ManifoldOptions& options) noexcept;
+  /// Returns the bytes of a ContactWork.
+  [[nodiscard]] static std::size_t bytes_of_work(const ManifoldOptions& options,
+                                                 std::size_t leaves) noexcept {
+    return sizeof(ContactAdder) + (options.points > 0 ? leaves * sizeof(LeafSum) : 0);
+  }
+  /// Throws kArgumentInvalid for an option out of range.
+  static void check(const ManifoldOptions& options);
   /// Returns the bytes that a reducer for this fixed tree reserves. Throws kArgumentInvalid for an
   /// option out of range.
   [[nodiscard]] IST_LOOP_API static std::size_t bytes_for(const SphereTree& fixed,
@@ -157,13 +186,14 @@ class ContactReducer {
                                                           const ManifoldOptions& options);
 
  private:
-  const SphereTree fixed_, moving_;  // which share the content
+  SphereTree fixed_, moving_;  // which share the content
+  ManifoldOptions options_;
   SpherePolicy policy_;
   ContactScale scale_;
   ContactRates rates_;
   std::size_t bytes_;
-  std::unique_ptr<ContactAdder> adder_;
-  std::optional<LeafSums> leaf_sums_;
+  std::unique_ptr<ContactWork> own_;
+  ContactWork* work_ = nullptr;
   std::vector<Contact> points_;
   ContactSums sums_;
   std::size_t count_ = 0;

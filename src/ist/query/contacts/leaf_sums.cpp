@@ -33,8 +33,16 @@ void add(const ContactTerms& terms, std::size_t begin, std::size_t end, LeafSum&
 }  // namespace
 
 LeafSums::LeafSums(const LinearOctree& octree, std::size_t most)
-    : octree_(&octree), nodes_(bytes_for(octree, most) / sizeof(LeafSum)) {
+    : LeafSums(bytes_for(octree, most) / sizeof(LeafSum)) {
+  bind(octree, most);
+}
+
+void LeafSums::bind(const LinearOctree& octree, std::size_t most) noexcept {
   IST_ASSERT(most > 0 && static_cast<std::size_t>(octree.depth()) < kMostLevels);
+  octree_ = &octree;
+  room_ = std::min<std::size_t>(most, octree.leaf_count());
+  IST_ASSERT(room_ <= nodes_.size());
+  clear();
 }
 
 std::size_t LeafSums::bytes_for(const LinearOctree& octree, std::size_t most) noexcept {
@@ -84,7 +92,7 @@ void LeafSums::push(const LeafSum& leaf) noexcept {
       nodes_[count_ - 1].add(leaf);
       return;
     }
-    if (count_ < nodes_.size()) {
+    if (count_ < room_) {
       nodes_[count_] = leaf;
       nodes_[count_++].node = node;
       return;

@@ -37,7 +37,11 @@ class LeafSums final : public ContactTermsStream {
   /// Reserves memory for `most` nodes, at least one: 80 bytes each.
   LeafSums(const LinearOctree& octree, std::size_t most);
   /// A list that cannot merge: it leaves out what does not fit, and is_short() says so.
-  explicit LeafSums(std::size_t most) : nodes_(most) {}
+  explicit LeafSums(std::size_t most) : nodes_(most), room_(most) {}
+
+  /// Takes the leaves of another octree from now on, at most `most` nodes. Allocates nothing.
+  /// Precondition: the list has so many, or one for each leaf.
+  void bind(const LinearOctree& octree, std::size_t most) noexcept;
 
   void clear() noexcept;
   /// Adds leaf pairs. Cost: 4 ns each.
@@ -75,6 +79,7 @@ class LeafSums final : public ContactTermsStream {
   static constexpr std::size_t kMostLevels = 32;
   const LinearOctree* octree_ = nullptr;
   std::vector<LeafSum> nodes_;
+  std::size_t room_;  // of them
   std::size_t count_ = 0;
   int level_ = 0;
   bool open_ = false, short_ = false;

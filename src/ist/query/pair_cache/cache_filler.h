@@ -21,8 +21,15 @@ class CacheFiller {
   };
 
   /// Reserves the memory of a Search.
-  CacheFiller(const SearchPlan& plan, const Kernels& kernels, std::size_t frontier_pairs)
-      : search_(plan, kernels, frontier_pairs), position_(search_.roots()) {}
+  CacheFiller(const SearchPlan& plan, const Kernels& kernels, std::size_t frontier_pairs,
+              std::size_t items = 0)
+      : search_(plan, kernels, frontier_pairs, items), position_(search_.roots()) {}
+
+  /// Call after the plan was made anew, for other trees.
+  void bind() noexcept {
+    search_.bind();
+    position_ = search_.roots();
+  }
 
   /// Begins a search for `cache`, which stays the caller's.
   void begin(PairCache& cache, const Wanted& wanted) noexcept;

@@ -19,14 +19,14 @@ constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
 
 CachedSearch::CachedSearch(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                            const SearchPlan& plan, const Kernels& kernels,
-                           const CacheOptions& options)
+                           const CacheOptions& options, std::size_t items)
     : plan_(plan),
       kernels_(kernels),
       fixed_(lengths_of(fixed, policy)),
       moving_(lengths_of(moving, policy)),
       bound_(fixed, moving, policy),
       caches_{PairCache(options.front_pairs), PairCache(options.front_pairs)},
-      search_(plan, kernels, options.frontier_pairs),
+      search_(plan, kernels, options.frontier_pairs, items),
       rows_(options.front_pairs),
       schedule_(std::min(fixed.voxel_size(), moving.voxel_size()), options.workers == 2),
       period_(options.period),
@@ -44,6 +44,16 @@ CachedSearch::~CachedSearch() {
   if (!worker_) return;
   worker_->retract(job_);
   job_.wait_idle();
+}
+
+void CachedSearch::bind(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+                        const MotionBound& bound) noexcept {
+  fixed_ = lengths_of(fixed, policy);
+  moving_ = lengths_of(moving, policy);
+  bound_ = bound;
+  schedule_ = CacheSchedule(std::min(fixed.voxel_size(), moving.voxel_size()), false);
+  search_.bind();
+  forget();
 }
 
 // `upper` was measured at the cache's centre. So the largest displacement from `pose` back to that
@@ -236,10 +246,11 @@ void CachedSearch::forget() noexcept {
   last_pairs_ = search_tests_ = 0;
 }
 
-std::size_t CachedSearch::bytes_for(const SearchPlan& plan, const CacheOptions& options) noexcept {
+std::size_t CachedSearch::bytes_for(const SearchPlan& plan, const CacheOptions& options,
+                                    std::size_t items) noexcept {
   return 2 * PairCache::bytes_for(options.front_pairs) +
          CacheRowMemory::bytes_for(options.front_pairs) +
-         Search::bytes_for(plan, options.frontier_pairs);
+         Search::bytes_for(plan, options.frontier_pairs, items);
 }
 
 }  // namespace ist

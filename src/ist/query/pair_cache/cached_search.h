@@ -30,10 +30,17 @@ struct CacheOptions {
 class CachedSearch {
  public:
   CachedSearch(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
-               const SearchPlan& plan, const Kernels& kernels, const CacheOptions& options);
+               const SearchPlan& plan, const Kernels& kernels, const CacheOptions& options,
+               std::size_t items = 0);
   ~CachedSearch();
   CachedSearch(const CachedSearch&) = delete;
   CachedSearch& operator=(const CachedSearch&) = delete;
+
+  /// Call after the plan was made anew, for other trees: forgets all poses and both caches.
+  /// Allocates nothing. Precondition: it was made for one worker, with Search::items_for() the
+  /// plan.
+  void bind(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+            const MotionBound& bound) noexcept;
 
   /// A cache that holds all leaf pairs of a pose.
   struct CacheAt {
@@ -60,8 +67,8 @@ class CachedSearch {
   /// Forgets all poses and both caches. Does not wait for the worker.
   void forget() noexcept;
   /// Returns the bytes that a search with these options reserves.
-  [[nodiscard]] static std::size_t bytes_for(const SearchPlan& plan,
-                                             const CacheOptions& options) noexcept;
+  [[nodiscard]] static std::size_t bytes_for(const SearchPlan& plan, const CacheOptions& options,
+                                             std::size_t items = 0) noexcept;
 
  private:
   using State = PairCache::State;

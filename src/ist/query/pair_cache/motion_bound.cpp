@@ -8,9 +8,10 @@
 
 namespace ist {
 
-MotionBound::MotionBound(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy)
-    : fixed_(box_of(fixed)),
-      moving_(box_of(moving)),
+MotionBound::MotionBound(const SphereTree& fixed, const Box& of_fixed, const SphereTree& moving,
+                         const Box& of_moving, SpherePolicy policy) noexcept
+    : fixed_(of_fixed),
+      moving_(of_moving),
       leaves_(fixed.largest_leaf_radius(policy) + moving.largest_leaf_radius(policy)),
       lengths_(fixed.bounding_radius() + moving.bounding_radius()) {}
 

@@ -11,8 +11,17 @@ namespace ist {
 /// Bounds how far the leaves of two bodies come nearer each other by a motion.
 class MotionBound {
  public:
+  /// The box in a tree's frame that holds the centres of its leaves.
+  struct Box {
+    Eigen::Vector3d centre, half;
+  };
   /// Cost: 1 ns a node above the leaves.
-  MotionBound(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy);
+  [[nodiscard]] static Box box_of(const SphereTree& tree);
+
+  MotionBound(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy)
+      : MotionBound(fixed, box_of(fixed), moving, box_of(moving), policy) {}
+  MotionBound(const SphereTree& fixed, const Box& of_fixed, const SphereTree& moving,
+              const Box& of_moving, SpherePolicy policy) noexcept;
 
   /// Returns a length, mesh units: the separation of two leaves, by their balls or by a slab,
   /// differs by no more than it between the two poses, if their bounds are no farther than `reach`
@@ -25,14 +34,9 @@ class MotionBound {
                                double reach) const noexcept;
 
  private:
-  struct Box {
-    Eigen::Vector3d centre, half;
-  };
-  [[nodiscard]] static Box box_of(const SphereTree& tree);
-
-  Box fixed_, moving_;  // which hold the leaves' centres, in the trees' frames
-  double leaves_;       // the radii of the largest leaves, added
-  double lengths_;      // the bounding radii, added
+  Box fixed_, moving_;
+  double leaves_;   // the radii of the largest leaves, added
+  double lengths_;  // the bounding radii, added
 };
 
 }  // namespace ist

@@ -1,5 +1,6 @@
 #include "ist/query/traversal/search.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "ist/query/traversal/search_pose.h"
@@ -15,28 +16,23 @@ constexpr std::size_t kBeamPairs = 16;
 constexpr float kLeastWidth = 0x1p-6F;
 
 // Returns the most pairs before step `i`, or leaf pairs, that fit the memory.
-std::size_t capacity_of(const SearchPlan& plan, std::size_t i, std::size_t pairs) noexcept {
-  const std::size_t most = i == 0 ? 1 : plan.most_pairs(i - 1);
-  const std::size_t row = i == 0 ? 1 : plan.longest_row(i - 1);
+std::size_t capacity_of(const SearchPlan::Sizes& sizes, std::size_t i, std::size_t pairs) noexcept {
+  const std::size_t most = i == 0 ? 1 : sizes.steps[i - 1].pairs;
+  const std::size_t row = i == 0 ? 1 : sizes.steps[i - 1].row;
   return std::max(row, std::min({pairs, most, std::size_t{1} << 31}));
 }
 
 }  // namespace
 
-Search::Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs)
-    : plan_(plan), kernels_(kernels), scratch_(std::make_unique<SearchScratch>()) {
-  const std::size_t steps = plan.steps().size();
-  for (std::size_t i = 0; i <= steps; ++i) {
-    const std::size_t capacity = capacity_of(plan, i, pairs);
-    Memory& memory = memory_.emplace_back();
-    memory.groups.resize(capacity + kFrontierSpare);
-    memory.moving.resize(capacity + kFrontierSpare);
-    frontiers_.push_back({memory.groups.data(), memory.moving.data(), 0, 0, capacity});
-  }
-  Frontier& roots = frontiers_.front();
-  roots.groups[0] = {0, 1};
-  roots.moving[0] = 0;
-  roots.group_count = roots.moving_count = 1;
+Search::Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs, std::size_t items)
+    : plan_(plan),
+      kernels_(kernels),
+      most_pairs_(pairs),
+      groups_(std::max(items, items_for(plan.sizes(), pairs))),
+      moving_(groups_.size()),
+      scratch_(std::make_unique<SearchScratch>()) {
+  frontiers_.reserve(SearchPlan::kMostSteps + 1);
+  bind();
   // Makes the first dispatched calls. With infinite pads all bounds overlap, wherever the bodies
   // lie.
   SearchPose pose{};
@@ -44,6 +40,28 @@ Search::Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs
   pose.leaf = pose.inner = {kAll, kAll, kAll};
   BudgetMeter unlimited;
   static_cast<void>(beam(pose, unlimited));
+}
+
+void Search::bind() noexcept {
+  frontiers_.clear();
+  std::size_t first = 0;
+  for (std::size_t i = 0; i <= plan_.sizes().count; ++i) {
+    const std::size_t capacity = capacity_of(plan_.sizes(), i, most_pairs_);
+    frontiers_.push_back({groups_.data() + first, moving_.data() + first, 0, 0, capacity});
+    first += capacity + kFrontierSpare;
+  }
+  Frontier& roots = frontiers_.front();
+  roots.groups[0] = {0, 1};
+  roots.moving[0] = 0;
+  roots.group_count = roots.moving_count = 1;
+}
+
+std::size_t Search::items_for(const SearchPlan::Sizes& sizes, std::size_t pairs) noexcept {
+  std::size_t items = 0;
+  for (std::size_t i = 0; i <= sizes.count; ++i) {
+    items += capacity_of(sizes, i, pairs) + kFrontierSpare;
+  }
+  return items;
 }
 
 std::size_t Search::whole_steps(const SearchPosition& at, std::size_t most) const noexcept {
@@ -94,13 +112,10 @@ float Search::beam(const SearchPose& pose, BudgetMeter& meter) noexcept {
   return upper;
 }
 
-std::size_t Search::bytes_for(const SearchPlan& plan, std::size_t pairs) noexcept {
-  std::size_t bytes = sizeof(SearchScratch);
-  for (std::size_t i = 0; i <= plan.steps().size(); ++i) {
-    bytes += (capacity_of(plan, i, pairs) + kFrontierSpare) *
-             (sizeof(SearchGroup) + sizeof(std::uint32_t));
-  }
-  return bytes;
+std::size_t Search::bytes_for(const SearchPlan& plan, std::size_t pairs,
+                              std::size_t items) noexcept {
+  return sizeof(SearchScratch) + std::max(items, items_for(plan.sizes(), pairs)) *
+                                     (sizeof(SearchGroup) + sizeof(std::uint32_t));
 }
 
 }  // namespace ist

@@ -42,8 +42,15 @@ struct SearchPosition {
 class Search {
  public:
   /// Reserves all memory: 12 bytes a step for each of `pairs`, but at least for every moving node
-  /// of the level, and at most for every pair of nodes.
-  Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs);
+  /// of the level, and at most for every pair of nodes; `items` of 12 bytes if these are more.
+  Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs, std::size_t items = 0);
+
+  /// Call after the plan was made anew, for other trees. Allocates nothing. Precondition: the
+  /// search has items_for() the plan.
+  void bind() noexcept;
+  /// Returns the length of all frontiers.
+  [[nodiscard]] static std::size_t items_for(const SearchPlan::Sizes& sizes,
+                                             std::size_t pairs) noexcept;
 
   /// Searches from the pair of roots down to the leaves. Returns the number of steps that are
   /// whole: all, unless the visitor ended the search early.
@@ -82,14 +89,10 @@ class Search {
   [[nodiscard]] float beam(const SearchPose& pose, BudgetMeter& meter) noexcept;
 
   /// Returns the bytes that a search with this memory reserves.
-  [[nodiscard]] static std::size_t bytes_for(const SearchPlan& plan, std::size_t pairs) noexcept;
+  [[nodiscard]] static std::size_t bytes_for(const SearchPlan& plan, std::size_t pairs,
+                                             std::size_t items = 0) noexcept;
 
  private:
-  struct Memory {
-    std::vector<SearchGroup> groups;
-    std::vector<std::uint32_t> moving;
-  };
-
   // Searches from a position on, and moves it. Returns the number of steps that are whole.
   template <SearchVisitor Visitor>
   std::size_t advance(SearchPosition& at, Visitor& visitor) noexcept;
@@ -106,8 +109,10 @@ class Search {
 
   const SearchPlan& plan_;
   const Kernels& kernels_;
-  std::vector<Memory> memory_;
-  std::vector<Frontier> frontiers_;  // the pairs before each step, and the leaf pairs
+  std::size_t most_pairs_;
+  std::vector<SearchGroup> groups_;    // of all frontiers
+  std::vector<std::uint32_t> moving_;  // as well
+  std::vector<Frontier> frontiers_;    // the pairs before each step, and the leaf pairs
   std::unique_ptr<SearchScratch> scratch_;
 };
 

@@ -1,5 +1,6 @@
 #include "ist/query/traversal/search_plan.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "ist/base/assert.h"
@@ -15,20 +16,13 @@ namespace {
 constexpr std::uint32_t kMostParents = 1U << 29;
 constexpr std::uint8_t kRootMask = 1;  // the root's parent has one child
 
-void require_addresses(const SphereTree& tree, const char* body) {
-  if (tree.depth() == 0 || parts_of(tree).octree.node_count(1) < kMostParents) return;
-  throw_error(ErrorCode::kMemoryLimit,
-              "{}: a tree of {} leaves is too large to be searched: use larger voxels", body,
-              tree.leaf_count());
-}
-
 // Returns the least float that is no less.
 float least_float(double value) {
   const auto nearest = static_cast<float>(value);
   return nearest < value ? std::nextafter(nearest, HUGE_VALF) : nearest;
 }
 
-ImplicitLevel implicit_level(const TreeParts& tree, SpherePolicy policy, int level) {
+ImplicitLevel implicit_level(const TreeParts& tree, SpherePolicy policy, int level) noexcept {
   const double half = 0.5 * tree.lattice.edge(level);
   ImplicitLevel made{};
   for (int code = 0; code < 8; ++code) {
@@ -44,17 +38,17 @@ ImplicitLevel implicit_level(const TreeParts& tree, SpherePolicy policy, int lev
 }
 
 // Makes all levels of a tree, the leaves first; none where the policy has blocks.
-std::vector<ImplicitLevel> implicit_levels(const TreeParts& tree, SpherePolicy policy) {
-  std::vector<ImplicitLevel> levels;
+void make_implicit_levels(const TreeParts& tree, SpherePolicy policy,
+                          std::vector<ImplicitLevel>& levels) noexcept {
+  levels.clear();
   for (int level = 0; is_implicit(policy) && level <= tree.lattice.depth; ++level) {
     levels.push_back(implicit_level(tree, policy, level));
   }
-  return levels;
 }
 
 // Makes the view of the children at `level` that a step reads.
 SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level,
-                         const std::vector<ImplicitLevel>& levels) {
+                         const std::vector<ImplicitLevel>& levels) noexcept {
   const LinearOctree& octree = parts_of(tree).octree;
   const bool is_root = level == tree.depth();
   const double edge = parts_of(tree).lattice.edge(level);
@@ -76,27 +70,75 @@ SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level,
   return side;
 }
 
+// Calls visit(a, b, open_a, open_b, size) for each step, which goes down to the fixed level `a` and
+// the moving level `b`.
+template <class Visit>
+void walk(const TreeShape& fixed, const TreeShape& moving, SearchLevels last, Visit visit) {
+  int a = fixed.depth, b = moving.depth;
+  bool begun = false;  // two leaves alone take a step
+  while (a > last.fixed || b > last.moving || !begun) {
+    begun = true;
+    const int left_a = a - last.fixed, left_b = b - last.moving;
+    const bool open_a = descends(left_a, fixed.edge(a), left_b, moving.edge(b)),
+               open_b = descends(left_b, moving.edge(b), left_a, fixed.edge(a));
+    const auto nodes = [](const TreeShape& tree, int level) -> std::size_t {
+      return tree.nodes[static_cast<std::size_t>(level)];
+    };
+    const std::size_t before = nodes(fixed, a) * nodes(moving, b);
+    a -= open_a ? 1 : 0;
+    b -= open_b ? 1 : 0;
+    visit(a, b, open_a, open_b,
+          SearchPlan::Size{nodes(moving, b), before * (open_a ? 8 : 1) * (open_b ? 8 : 1)});
+  }
+}
+
 }  // namespace
 
+TreeShape::TreeShape(const SphereTree& tree) noexcept
+    : voxel_size(tree.voxel_size()), depth(tree.depth()) {
+  IST_ASSERT(static_cast<std::size_t>(depth) < kMostLevels);
+  for (int level = 0; level <= depth; ++level) {
+    nodes[static_cast<std::size_t>(level)] = parts_of(tree).octree.node_count(level);
+  }
+}
+
+void TreeShape::include(const TreeShape& other) noexcept {
+  for (std::size_t k = 0; k < kMostLevels; ++k) nodes[k] = std::max(nodes[k], other.nodes[k]);
+}
+
+SearchPlan::Sizes SearchPlan::sizes_of(const TreeShape& fixed, const TreeShape& moving) noexcept {
+  Sizes sizes;
+  walk(fixed, moving, {},
+       [&](int, int, bool, bool, const Size& size) { sizes.steps[sizes.count++] = size; });
+  return sizes;
+}
+
+void SearchPlan::require_addresses(const SphereTree& tree, std::string_view body) {
+  if (tree.depth() == 0 || parts_of(tree).octree.node_count(1) < kMostParents) return;
+  throw_error(ErrorCode::kMemoryLimit,
+              "{}: a tree of {} leaves is too large to be searched: use larger voxels", body,
+              tree.leaf_count());
+}
+
 SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
-                       SearchLevels last)
-    : fixed_implicit_(implicit_levels(parts_of(fixed), policy)),
-      moving_implicit_(implicit_levels(parts_of(moving), policy)) {
+                       SearchLevels last) {
   fixed.require(policy, "fixed");
   moving.require(policy, "moving");
   require_addresses(fixed, "fixed");
   require_addresses(moving, "moving");
-  int a = fixed.depth(), b = moving.depth();
-  while (a > last.fixed || b > last.moving || steps_.empty()) {  // two leaves alone take a step
-    const double edge_a = parts_of(fixed).lattice.edge(a),
-                 edge_b = parts_of(moving).lattice.edge(b);
-    const int left_a = a - last.fixed, left_b = b - last.moving;
-    const bool open_a = descends(left_a, edge_a, left_b, edge_b),
-               open_b = descends(left_b, edge_b, left_a, edge_a);
-    const std::size_t before =
-        std::size_t{parts_of(fixed).octree.node_count(a)} * parts_of(moving).octree.node_count(b);
-    a -= open_a ? 1 : 0;
-    b -= open_b ? 1 : 0;
+  fixed_implicit_.reserve(TreeShape::kMostLevels);
+  moving_implicit_.reserve(TreeShape::kMostLevels);
+  steps_.reserve(kMostSteps);
+  make(fixed, TreeShape(fixed), moving, TreeShape(moving), policy, last);
+}
+
+void SearchPlan::make(const SphereTree& fixed, const TreeShape& of_fixed, const SphereTree& moving,
+                      const TreeShape& of_moving, SpherePolicy policy, SearchLevels last) noexcept {
+  make_implicit_levels(parts_of(fixed), policy, fixed_implicit_);
+  make_implicit_levels(parts_of(moving), policy, moving_implicit_);
+  steps_.clear();
+  sizes_.count = 0;
+  walk(of_fixed, of_moving, last, [&](int a, int b, bool open_a, bool open_b, const Size& size) {
     SearchStep step{read_children(fixed, policy, a, fixed_implicit_),
                     read_children(moving, policy, b, moving_implicit_),
                     false,
@@ -109,15 +151,13 @@ SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, Sphere
     step.fixed.emits_slots = a == last.fixed && b > last.moving;
     step.moving.emits_slots = b == last.moving && a > last.fixed;
     step.last = a <= last.fixed && b <= last.moving;
-    step.radius_limit = static_cast<float>(
-        2 * (parts_of(fixed).lattice.edge(a) + parts_of(moving).lattice.edge(b)));
+    step.radius_limit = static_cast<float>(2 * (of_fixed.edge(a) + of_moving.edge(b)));
+    IST_ASSERT(steps_.size() < kMostSteps);
     steps_.push_back(step);
-    sizes_.push_back(
-        {parts_of(moving).octree.node_count(b), before * (open_a ? 8 : 1) * (open_b ? 8 : 1)});
-  }
-  IST_ASSERT(steps_.size() <= kMostSteps);
-  if (!steps_.back().fixed.descends) fixed_leaves_ = steps_.back().fixed.nodes;
-  if (!steps_.back().moving.descends) moving_leaves_ = steps_.back().moving.nodes;
+    sizes_.steps[sizes_.count++] = size;
+  });
+  fixed_leaves_ = steps_.back().fixed.descends ? nullptr : steps_.back().fixed.nodes;
+  moving_leaves_ = steps_.back().moving.descends ? nullptr : steps_.back().moving.nodes;
 }
 
 void SearchPlan::resolve(std::span<LeafPair> leaf_pairs) const noexcept {

@@ -7,13 +7,12 @@ namespace ist {
 // A step is from a moving level to the one below, with fixed nodes of the same level, or of the
 // fixed root's where that is lower; their children may be all nodes below.
 ClusterSearch::Lengths ClusterSearch::step_lengths(const TriangleClusters& fixed,
-                                                   const TriangleClusters& moving,
-                                                   int level) noexcept {
+                                                   int moving_root_level, int level) noexcept {
   if (level == 0) return {};  // clusters have no children
   const auto nodes_at = [&](int at) -> std::size_t {
     return fixed.node_count(std::clamp(at, 0, fixed.root_level()));
   };
-  const bool top = level == moving.root_level() + 1;
+  const bool top = level == moving_root_level + 1;
   const std::size_t lanes = top ? 1 : kClusterWidth;
   return {nodes_at(level) + kClusterWidth,
           lanes * nodes_at(top ? level - 1 : level) + kClusterWidth,
@@ -21,41 +20,61 @@ ClusterSearch::Lengths ClusterSearch::step_lengths(const TriangleClusters& fixed
 }
 
 ClusterSearch::ClusterSearch(const TriangleClusters& fixed, const TriangleClusters& moving,
-                             const ClusterKernels& kernels)
-    : fixed_(fixed), moving_(moving), kernels_(kernels) {
+                             const ClusterKernels& kernels, std::size_t items)
+    : kernels_(kernels),
+      items_(std::max(items, items_for(fixed, moving.root_level()))),
+      steps_(kMostSteps) {
+  bind(fixed, moving);
+}
+
+void ClusterSearch::bind(const TriangleClusters& fixed, const TriangleClusters& moving) noexcept {
+  fixed_ = &fixed;
+  moving_ = &moving;
+  std::uint32_t* next = items_.data();
   for (int level = 0; level <= moving.root_level() + 1; ++level) {
-    const Lengths lengths = step_lengths(fixed, moving, level);
-    Step& step = steps_.emplace_back();
-    step.bits.resize(lengths.bits);
-    step.near.resize(lengths.near);
-    step.deeper.resize(lengths.deeper);
+    const Lengths lengths = step_lengths(fixed, moving.root_level(), level);
+    Step& step = step_at(level);
+    step.bits = next;
+    step.near = step.bits + lengths.bits;
+    step.deeper = step.near + lengths.near;
+    next = step.deeper + lengths.deeper;
   }
+}
+
+std::size_t ClusterSearch::items_for(const TriangleClusters& fixed,
+                                     int moving_root_level) noexcept {
+  std::size_t items = 0;
+  for (int level = 0; level <= moving_root_level + 1; ++level) {
+    const Lengths lengths = step_lengths(fixed, moving_root_level, level);
+    items += lengths.bits + lengths.near + lengths.deeper;
+  }
+  return items;
 }
 
 void ClusterSearch::begin(const ClusterPose& pose) noexcept {
   step_ = {pose,
            fixed_at(0),
-           fixed_.clusters().data(),
-           moving_.clusters().data(),
-           fixed_.triangle_count(),
-           moving_.triangle_count()};
+           fixed_->clusters().data(),
+           moving_->clusters().data(),
+           fixed_->triangle_count(),
+           moving_->triangle_count()};
 }
 
 bool ClusterSearch::descend_to_root(float reach, BudgetMeter& meter, int& level,
                                     LaneNodes& nodes) noexcept {
   // Above its root the moving tree has a node of one child.
-  Step& top = steps_.back();
-  kernels_.turn_nodes(moving_.bounds(moving_.root_level())[0], step_.pose, top.turned);
-  level = fixed_.root_level();
-  nodes = {top.near.data(), 1};
+  Step& top = step_at(moving_->root_level() + 1);
+  kernels_.turn_nodes(moving_->bounds(moving_->root_level())[0], step_.pose, top.turned);
+  level = fixed_->root_level();
+  nodes = {top.near, 1};
   top.near[0] = 0;
-  while (level > moving_.root_level()) {
+  while (level > moving_->root_level()) {
     LaneNodes children{};
     if (!find_children(top, --level, nodes, reach, meter, children)) {
       note_untested(top, level + 1, nodes);
       return false;
     }
-    std::copy_n(children.codes, children.count, top.near.begin());
+    std::copy_n(children.codes, children.count, top.near);
     nodes.count = children.count;
   }
   return true;
@@ -70,12 +89,11 @@ bool ClusterSearch::find_near(Step& step, std::uint32_t lanes, int fixed_level, 
     const LaneNodes part = nodes.part(k, kPart);
     allowed = meter.allows(lanes * part.count);
     if (!allowed) break;
-    kernels_.meet_nodes(step.turned, lanes, fixed_at(fixed_level), part, reach,
-                        step.bits.data() + k);
+    kernels_.meet_nodes(step.turned, lanes, fixed_at(fixed_level), part, reach, step.bits + k);
     meter.spend(lanes * part.count);
   }
-  if (!allowed) std::fill_n(step.bits.data(), nodes.count, (1U << lanes) - 1);  // all are left
-  found = {step.near.data(), kernels_.list_lanes(nodes, step.bits.data(), step.near.data())};
+  if (!allowed) std::fill_n(step.bits, nodes.count, (1U << lanes) - 1);  // all are left
+  found = {step.near, kernels_.list_lanes(nodes, step.bits, step.near)};
   if (!allowed) note_untested(step, fixed_level, found);
   return allowed;
 }
@@ -84,14 +102,14 @@ bool ClusterSearch::find_near(Step& step, std::uint32_t lanes, int fixed_level, 
 bool ClusterSearch::find_children(Step& step, int level, LaneNodes parents, float reach,
                                   BudgetMeter& meter, LaneNodes& found) const noexcept {
   const FixedNodes children = fixed_at(level);
-  found = {step.deeper.data(), 0};
+  found = {step.deeper, 0};
   const std::size_t most = meter.is_limited() ? kPart : parents.count;
   for (std::size_t k = 0; k < parents.count; k += most) {
     const LaneNodes part = parents.part(k, most);
     const std::uint64_t tests = children.children_of(part);
     if (!meter.allows(tests)) return false;
-    found.count += kernels_.meet_children(step.turned, children, part, reach,
-                                          step.deeper.data() + found.count);
+    found.count +=
+        kernels_.meet_children(step.turned, children, part, reach, step.deeper + found.count);
     meter.spend(tests);
   }
   return true;
@@ -119,7 +137,7 @@ void ClusterSearch::note_untested(const Step& step, int fixed_level, LaneNodes p
   const TurnedBlock& from = step.turned;
   for (std::size_t k = 0; k < pairs.count; ++k) {
     const std::uint32_t lane = pairs.lane(k), node = pairs.node(k), at = node % kClusterWidth;
-    const NodeBlock& block = fixed_.bounds(fixed_level)[node / kClusterWidth];
+    const NodeBlock& block = fixed_->bounds(fixed_level)[node / kClusterWidth];
     double squared = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const double apart =
@@ -132,16 +150,6 @@ void ClusterSearch::note_untested(const Step& step, int fixed_level, LaneNodes p
     const double rounding = double{kNodeRounding} * (radii + centres);
     nearest_left_ = std::min(nearest_left_, centres - radii - rounding - step_.pose.error);
   }
-}
-
-std::size_t ClusterSearch::bytes_for(const TriangleClusters& fixed,
-                                     const TriangleClusters& moving) noexcept {
-  std::size_t bytes = 0;
-  for (int level = 0; level <= moving.root_level() + 1; ++level) {
-    const Lengths lengths = step_lengths(fixed, moving, level);
-    bytes += sizeof(Step) + (lengths.bits + lengths.near + lengths.deeper) * sizeof(std::uint32_t);
-  }
-  return bytes;
 }
 
 }  // namespace ist

@@ -37,9 +37,17 @@ class ClusterSearch {
  public:
   static constexpr std::uint64_t kClusterTests = 16;
 
-  /// Reserves all memory: 80 bytes for each fixed cluster. Holds references to both trees.
+  /// Reserves all memory: 80 bytes for each fixed cluster, or `items` numbers if these are more.
+  /// Refers to both trees.
   ClusterSearch(const TriangleClusters& fixed, const TriangleClusters& moving,
-                const ClusterKernels& kernels);
+                const ClusterKernels& kernels, std::size_t items = 0);
+
+  /// Searches two other trees from now on, and refers to them. Allocates nothing. Precondition: the
+  /// search has items_for() numbers for them.
+  void bind(const TriangleClusters& fixed, const TriangleClusters& moving) noexcept;
+  /// Returns the length of all lists, for a moving root of this level.
+  [[nodiscard]] static std::size_t items_for(const TriangleClusters& fixed,
+                                             int moving_root_level) noexcept;
 
   /// Sets the pose.
   void begin(const ClusterPose& pose) noexcept;
@@ -57,24 +65,29 @@ class ClusterSearch {
   [[nodiscard]] const ClusterStep& step() const noexcept { return step_; }
   /// Returns a lower bound of the distance of all nodes that an ended search did not come to.
   [[nodiscard]] double nearest_left() const noexcept { return nearest_left_; }
-  /// Returns the bytes that a search of these trees reserves.
+  /// Returns the bytes that a search of these trees with at least so many numbers reserves.
   [[nodiscard]] static std::size_t bytes_for(const TriangleClusters& fixed,
-                                             const TriangleClusters& moving) noexcept;
+                                             const TriangleClusters& moving,
+                                             std::size_t items = 0) noexcept {
+    return std::max(items, items_for(fixed, moving.root_level())) * sizeof(std::uint32_t) +
+           kMostSteps * sizeof(Step);
+  }
 
  protected:
   // The lengths of a step's lists.
   struct Lengths {
     std::size_t bits, near, deeper;
   };
-  [[nodiscard]] static Lengths step_lengths(const TriangleClusters& fixed,
-                                            const TriangleClusters& moving, int level) noexcept;
+  [[nodiscard]] static Lengths step_lengths(const TriangleClusters& fixed, int moving_root_level,
+                                            int level) noexcept;
   // A step from a moving node to its children, which are lanes.
   struct Step {
     TurnedBlock turned;
-    std::vector<std::uint32_t> bits;    // of lanes, for each fixed node that the moving one is near
-    std::vector<std::uint32_t> near;    // these, by lanes
-    std::vector<std::uint32_t> deeper;  // their children, by lanes
+    std::uint32_t* bits;    // of lanes, for each fixed node that the moving one is near
+    std::uint32_t* near;    // these, by lanes
+    std::uint32_t* deeper;  // their children, by lanes
   };
+  static constexpr std::size_t kMostSteps = TriangleClusters::kMostLevels + 2;
   // The pairs of each lane.
   struct Groups {
     std::array<LaneNodes, kClusterWidth> pairs;
@@ -84,7 +97,7 @@ class ClusterSearch {
   static constexpr std::size_t kPart = 31;
 
   [[nodiscard]] FixedNodes fixed_at(int level) const noexcept {
-    return {fixed_.bounds(level).data(), fixed_.node_count(level)};
+    return {fixed_->bounds(level).data(), fixed_->node_count(level)};
   }
   [[nodiscard]] Step& step_at(int level) noexcept {
     return steps_[static_cast<std::size_t>(level)];
@@ -107,9 +120,10 @@ class ClusterSearch {
   bool descend_to_root(float reach, BudgetMeter& meter, int& level, LaneNodes& nodes) noexcept;
   void note_untested(const Step& step, int fixed_level, LaneNodes pairs) noexcept;
 
-  const TriangleClusters &fixed_, &moving_;
+  const TriangleClusters *fixed_ = nullptr, *moving_ = nullptr;
   const ClusterKernels& kernels_;
-  std::vector<Step> steps_;  // by the moving node's level; the last one is above the root
+  std::vector<std::uint32_t> items_;  // of the lists of all steps
+  std::vector<Step> steps_;           // by the moving node's level; one is above the root
   ClusterStep step_{};
   bool measures_rest_ = false;
   double nearest_left_ = 0;
@@ -122,7 +136,7 @@ bool ClusterSearch::run(BudgetMeter& meter, Visitor& visitor) noexcept {
   int level = 0;
   LaneNodes nodes{};
   if (!descend_to_root(visitor.reach(), meter, level, nodes)) return false;
-  return descend(moving_.root_level(), 0, level, nodes, meter, visitor);
+  return descend(moving_->root_level(), 0, level, nodes, meter, visitor);
 }
 
 // Goes on with the children of a moving node, and with the `nodes` that they may be near.
@@ -134,8 +148,8 @@ bool ClusterSearch::descend(int moving_level, std::uint32_t moving, int fixed_le
     if (moving_level == 1) return visitor.take({moving, fixed_level, nodes});
   }
   Step& step = step_at(moving_level);
-  const std::uint32_t lanes = moving_.child_count(moving_level - 1, moving);
-  kernels_.turn_nodes(moving_.bounds(moving_level - 1)[moving], step_.pose, step.turned);
+  const std::uint32_t lanes = moving_->child_count(moving_level - 1, moving);
+  kernels_.turn_nodes(moving_->bounds(moving_level - 1)[moving], step_.pose, step.turned);
   LaneNodes near{};
   if (!find_near(step, lanes, fixed_level, nodes, visitor.reach(), meter, near)) return false;
   const auto go_on = [&](LaneNodes some) {
@@ -176,7 +190,7 @@ bool ClusterSearch::go_deeper(Step& step, int moving_level, std::uint32_t first,
   for (std::size_t k = 0; k < groups.count; ++k) {
     const LaneNodes& group = groups.pairs[k];
     if (k + 1 < groups.count) {
-      load_ahead(moving_.bounds(moving_level - 2)[first + groups.pairs[k + 1].lane(0)]);
+      load_ahead(moving_->bounds(moving_level - 2)[first + groups.pairs[k + 1].lane(0)]);
     }
     if (descend(moving_level - 1, first + group.lane(0), fixed_level, group, meter, visitor)) {
       continue;

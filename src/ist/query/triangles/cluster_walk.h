@@ -21,7 +21,7 @@ class ClusterWalk : private ClusterSearch {
     int fixed_level = 0;
     LaneNodes nodes{};
     descend_to_root(reach_, meter, fixed_level, nodes);
-    root_ = static_cast<std::size_t>(moving_.root_level());
+    root_ = static_cast<std::size_t>(moving_->root_level());
     level_ = root_;
     left_ = {};
     enter(level_, 0, fixed_level, nodes, meter);
@@ -72,8 +72,8 @@ class ClusterWalk : private ClusterSearch {
     left.pairs = {};
     left.groups.count = left.done = 0;
     if (nodes.count == 0) return;
-    const std::uint32_t lanes = moving_.child_count(moving_level - 1, moving);
-    kernels_.turn_nodes(moving_.bounds(moving_level - 1)[moving], step_.pose, step.turned);
+    const std::uint32_t lanes = moving_->child_count(moving_level - 1, moving);
+    kernels_.turn_nodes(moving_->bounds(moving_level - 1)[moving], step_.pose, step.turned);
     find_near(step, lanes, fixed_level, nodes, reach_, meter, left.pairs);
     if (moving_level <= fixed_level) {
       LaneNodes deeper{};

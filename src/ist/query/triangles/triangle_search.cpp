@@ -165,6 +165,10 @@ double longest_edge(const TriangleMesh& mesh) {
   return std::sqrt(squared);
 }
 
+const TriangleClusters& clusters_of(const SphereTree& tree) noexcept {
+  return parts_of(tree).triangles->clusters;
+}
+
 NearestBeam::NearestBeam(const TriangleClusters& fixed, const TriangleClusters& moving,
                          const ClusterKernels& kernels, const ClusterPose& pose,
                          BudgetMeter& meter) noexcept {
@@ -207,24 +211,37 @@ NearestBeam::NearestBeam(const TriangleClusters& fixed, const TriangleClusters& 
 
 }  // namespace
 
+TriangleLengths TriangleLengths::of(const SphereTree& tree) {
+  const TriangleMesh* const mesh = tree.triangles();
+  if (mesh == nullptr) return {};
+  return {ist::largest_coordinate(*mesh), ist::longest_edge(*mesh)};
+}
+
 TriangleSearch::TriangleSearch(const SphereTree& fixed, const SphereTree& moving,
                                const Kernels& kernels, const TriangleOptions& options)
-    : fixed_(fixed),
-      moving_(moving),
-      fixed_clusters_(parts_of(fixed).triangles->clusters),
-      moving_clusters_(parts_of(moving).triangles->clusters),
-      kernels_(kernels.clusters),
-      largest_coordinate_(largest_coordinate(*moving.triangles())),
-      longest_edge_(std::max(longest_edge(*fixed.triangles()), longest_edge(*moving.triangles()))),
-      search_(fixed_clusters_, moving_clusters_, kernels_),
+    : kernels_(kernels.clusters),
+      search_(clusters_of(fixed), clusters_of(moving), kernels_, options.items),
       list_(kSorted) {
+  bind(fixed, TriangleLengths::of(fixed), moving, TriangleLengths::of(moving));
   if (options.workers == 2) {
-    shared_.emplace(fixed_clusters_, moving_clusters_, kernels_, options.period);
+    shared_.emplace(*fixed_clusters_, *moving_clusters_, kernels_, options.period);
   }
   if (options.near_pairs > 0) {
-    near_.emplace(*fixed.triangles(), *moving.triangles(), fixed_clusters_, moving_clusters_,
+    near_.emplace(*fixed.triangles(), *moving.triangles(), *fixed_clusters_, *moving_clusters_,
                   kernels_, options.near_pairs);
   }
+}
+
+void TriangleSearch::bind(const SphereTree& fixed, const TriangleLengths& of_fixed,
+                          const SphereTree& moving, const TriangleLengths& of_moving) noexcept {
+  fixed_ = &fixed;
+  moving_ = &moving;
+  fixed_clusters_ = &clusters_of(fixed);
+  moving_clusters_ = &clusters_of(moving);
+  largest_coordinate_ = of_moving.largest_coordinate;
+  longest_edge_ = std::max(of_fixed.longest_edge, of_moving.longest_edge);
+  search_.bind(*fixed_clusters_, *moving_clusters_);
+  witnesses_ = {};
 }
 
 double TriangleSearch::moved_error(const Eigen::Isometry3d& rigid) const noexcept {
@@ -239,7 +256,7 @@ bool TriangleSearch::is_too_far(const RelativePose& pose) const noexcept {
 // The motion between the clusters' frames. Beside the rounding of moved vertices, that of the
 // frames' origins, of the motion's product, and of coordinates in a frame.
 ClusterPose TriangleSearch::cluster_pose(const TrianglePose& pose) const noexcept {
-  const Eigen::Matrix3d &a = fixed_clusters_.axes(), &b = moving_clusters_.axes();
+  const Eigen::Matrix3d &a = fixed_clusters_->axes(), &b = moving_clusters_->axes();
   ClusterPose out;
   Eigen::Matrix3d turned;  // rotation · b
   const auto& r = pose.relative.rotation;
@@ -255,11 +272,11 @@ ClusterPose TriangleSearch::cluster_pose(const TrianglePose& pose) const noexcep
     }
     out.translation[i] = product(a.col(i), pose.relative.translation);
   }
-  out.grid = fixed_clusters_.grid();
+  out.grid = fixed_clusters_->grid();
   const double frames =
-      0x1p-46 * (fixed_.bounding_radius() + moving_.bounding_radius() +
+      0x1p-46 * (fixed_->bounding_radius() + moving_->bounding_radius() +
                  pose.relative.translation.cwiseAbs().maxCoeff()) +
-      0x1p-50 * (fixed_.origin().cwiseAbs().maxCoeff() + moving_.origin().cwiseAbs().maxCoeff());
+      0x1p-50 * (fixed_->origin().cwiseAbs().maxCoeff() + moving_->origin().cwiseAbs().maxCoeff());
   out.error = rounded_up(2 * moved_error(pose.rigid) + frames);
   return out;
 }
@@ -267,7 +284,7 @@ ClusterPose TriangleSearch::cluster_pose(const TrianglePose& pose) const noexcep
 TriangleSearch::End TriangleSearch::pairs(const TrianglePose& pose, const Budget& budget,
                                           std::span<TrianglePair> out) noexcept {
   list_.begin(out);
-  const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
+  const Meshes meshes{*fixed_->triangles(), {*moving_->triangles(), pose.rigid}};
   search_.begin(cluster_pose(pose));
   AllPairs all({search_.step(), kernels_, meshes, memory_, budget}, list_);
   BudgetMeter meter(budget, kRootTests);
@@ -275,41 +292,42 @@ TriangleSearch::End TriangleSearch::pairs(const TrianglePose& pose, const Budget
       shared_ ? shared_->run(search_, meshes, meter, all, list_) : search_.run(meter, all);
   complete = all.finish() && complete;
   list_.finish();
-  if (list_.count() > 0 && !out.empty()) met_ = {out[0].fixed, out[0].moving};
+  if (list_.count() > 0 && !out.empty()) witnesses_.met = {out[0].fixed, out[0].moving};
   return {complete, meter.spent() - kRootTests};
 }
 
 TriangleSearch::Any TriangleSearch::any(const TrianglePose& pose, const Budget& budget) noexcept {
-  const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
+  const Meshes meshes{*fixed_->triangles(), {*moving_->triangles(), pose.rigid}};
   if (still_meet(meshes, budget)) return {{true, 1}, true};
   AnyPair any({search_.step(), kernels_, meshes, memory_, budget});
   BudgetMeter meter(budget, kRootTests);
   search_.begin(cluster_pose(pose));
   const bool complete = search_.run(meter, any);
-  if (any.found()) met_ = any.found();
+  if (any.found()) witnesses_.met = any.found();
   return {{complete || any.found(), meter.spent() - kRootTests}, any.found().has_value()};
 }
 
 TriangleSearch::Nearest TriangleSearch::nearest(const TrianglePose& pose, double tolerance,
                                                 const Budget& budget,
                                                 DistanceInterval& distance) noexcept {
-  const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
+  const Meshes meshes{*fixed_->triangles(), {*moving_->triangles(), pose.rigid}};
   const auto closest = [&](TriangleIds ids) {
     return closest_points(corners_of(meshes.fixed, ids.fixed), meshes.moving[ids.moving],
                           {ids.fixed, ids.moving});
   };
   if (still_meet(meshes, budget)) {
     distance = {0, 0};
-    return {{true, 1}, 0, closest(*met_)};
+    return {{true, 1}, 0, closest(*witnesses_.met)};
   }
   search_.begin(cluster_pose(pose));
   NearestPair nearest({search_.step(), kernels_, meshes, memory_, budget}, tolerance, longest_edge_,
                       distance.upper);
   BudgetMeter meter(budget, kRootTests);
   bool near = false;
-  if (nearest_ && !budget.has_tests()) {
-    nearest.measure(nearest_->ids);
-    near = nearest.ids() && nearest.distance() <= kNearWitness * nearest_->distance + tolerance &&
+  if (witnesses_.nearest && !budget.has_tests()) {
+    nearest.measure(witnesses_.nearest->ids);
+    near = nearest.ids() &&
+           nearest.distance() <= kNearWitness * witnesses_.nearest->distance + tolerance &&
            nearest.distance() <= kNearBodies * radii();
     meter.spend(1);
   }
@@ -317,9 +335,9 @@ TriangleSearch::Nearest TriangleSearch::nearest(const TrianglePose& pose, double
   bool complete = nearest.distance() == 0 || search_.run(meter, nearest);
   complete = complete || nearest.distance() == 0;
   if (nearest.distance() == 0) {
-    met_ = nearest.ids();
+    witnesses_.met = nearest.ids();
   } else if (nearest.ids()) {
-    nearest_ = {*nearest.ids(), nearest.distance()};
+    witnesses_.nearest = {*nearest.ids(), nearest.distance()};
   }
   const double error = nearest.error();
   double lower =
@@ -334,19 +352,19 @@ TriangleSearch::Nearest TriangleSearch::nearest(const TrianglePose& pose, double
 
 ClusterPose TriangleSearch::cluster_pose(const Eigen::Isometry3d& rigid) const noexcept {
   return cluster_pose(
-      {rigid, *relative_pose(rigid, parts_of(fixed_).lattice, parts_of(moving_).lattice)});
+      {rigid, *relative_pose(rigid, parts_of(*fixed_).lattice, parts_of(*moving_).lattice)});
 }
 
 TriangleSearch::Near TriangleSearch::near(const TrianglePose& pose, double enough,
                                           const Budget& budget, NearList& list) noexcept {
-  const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
+  const Meshes meshes{*fixed_->triangles(), {*moving_->triangles(), pose.rigid}};
   // No two points are farther apart: a float holds it.
   const double farthest = 2 * (radii() + pose.relative.translation.cwiseAbs().maxCoeff());
   enough = std::min(enough, farthest);
   const NearCache::Need need{pose.rigid, enough, distance_error(enough) + moved_error(pose.rigid)};
   const bool carries = near_ && !budget.has_tests();
   search_.begin(cluster_pose(pose));
-  NearDecision decision({search_.step(), kernels_, meshes, memory_, budget}, *moving_.triangles(),
+  NearDecision decision({search_.step(), kernels_, meshes, memory_, budget}, *moving_->triangles(),
                         plain_move(pose.rigid), enough, list);
   if (carries && near_->find(need)) {
     std::uint64_t tests = 0;
@@ -372,7 +390,7 @@ void TriangleSearch::prepare_near(const NearCache::Need& need, std::uint64_t tes
 
 // Returns whether the triangles that met last still do. A limit of tests does not ask.
 bool TriangleSearch::still_meet(const Meshes& meshes, const Budget& budget) const noexcept {
-  return met_ && !budget.has_tests() && meshes.meet(*met_);
+  return witnesses_.met && !budget.has_tests() && meshes.meet(*witnesses_.met);
 }
 
 // Finds a first bound, as far as the budget allows.
@@ -380,11 +398,11 @@ template <class Visitor>
 void TriangleSearch::begin_nearest(BudgetMeter& meter, Visitor& nearest) noexcept {
   const ClusterPose& pose = search_.step().pose;
   TurnedBlock turned;
-  for (const auto& pair : NearestBeam(fixed_clusters_, moving_clusters_, kernels_, pose, meter)) {
+  for (const auto& pair : NearestBeam(*fixed_clusters_, *moving_clusters_, kernels_, pose, meter)) {
     if (!meter.allows(ClusterSearch::kClusterTests)) return;
     meter.spend(ClusterSearch::kClusterTests);
     const std::uint32_t block = pair.moving / kClusterWidth, lane = pair.moving % kClusterWidth;
-    kernels_.turn_nodes(moving_clusters_.bounds(0)[block], pose, turned);
+    kernels_.turn_nodes(moving_clusters_->bounds(0)[block], pose, turned);
     const std::uint32_t code = kClusterWidth * pair.fixed + lane;
     nearest.visit({turned, kClusterWidth * block, {&code, 1}});
   }
@@ -392,10 +410,9 @@ void TriangleSearch::begin_nearest(BudgetMeter& meter, Visitor& nearest) noexcep
 
 std::size_t TriangleSearch::bytes_for(const SphereTree& fixed, const SphereTree& moving,
                                       const TriangleOptions& options) noexcept {
-  const TriangleClusters &of_fixed = parts_of(fixed).triangles->clusters,
-                         &of_moving = parts_of(moving).triangles->clusters;
-  return ClusterSearch::bytes_for(of_fixed, of_moving) + kSorted * sizeof(TrianglePair) +
-         FoundMemory::bytes() +
+  const TriangleClusters &of_fixed = clusters_of(fixed), &of_moving = clusters_of(moving);
+  return ClusterSearch::bytes_for(of_fixed, of_moving, options.items) +
+         kSorted * sizeof(TrianglePair) + FoundMemory::bytes() +
          (options.workers == 2 ? SharedPairs::bytes_for(of_fixed, of_moving) : 0) +
          (options.near_pairs > 0 ? NearCache::bytes_for(of_fixed, of_moving, options.near_pairs)
                                  : 0);

@@ -21,6 +21,26 @@ struct TriangleOptions {
   int workers;                      ///< 1 or 2
   std::chrono::nanoseconds period;  ///< as for ResidentWorker::tick
   std::size_t near_pairs = 0;       ///< room of a NearCache; 0: there is none
+  std::size_t items = 0;            ///< least ClusterSearch::items_for(), to be bound later
+};
+
+/// Lengths of a mesh, mesh units.
+struct TriangleLengths {
+  /// Measures a tree's triangles; zeros without triangles. Cost: 10 ns a triangle.
+  static TriangleLengths of(const SphereTree& tree);
+
+  double largest_coordinate = 0;  ///< without its sign, of a vertex in use
+  double longest_edge = 0;
+};
+
+/// The triangles that a question found last at a pair of bodies, for the next one.
+struct Witnesses {
+  struct Nearest {
+    TriangleIds ids;
+    double distance;
+  };
+  std::optional<TriangleIds> met;
+  std::optional<Nearest> nearest;
 };
 
 /// Two bodies at a pose, for exact questions.
@@ -38,9 +58,15 @@ struct TrianglePose {
 /// ones alone: they are the same on every target, as those that met need not be.
 class TriangleSearch {
  public:
-  /// Reserves all memory. Both trees must have triangles. Holds references to both.
+  /// Reserves all memory. Both trees must have triangles. Refers to both.
   TriangleSearch(const SphereTree& fixed, const SphereTree& moving, const Kernels& kernels,
                  const TriangleOptions& options);
+
+  /// Asks two other trees from now on, and refers to them. Allocates nothing. Preconditions: both
+  /// have triangles, and the search has ClusterSearch::items_for() numbers. It has one worker, and
+  /// no NearCache.
+  void bind(const SphereTree& fixed, const TriangleLengths& of_fixed, const SphereTree& moving,
+            const TriangleLengths& of_moving) noexcept;
 
   /// The end of a search, and its cost.
   struct End {
@@ -70,6 +96,9 @@ class TriangleSearch {
   Nearest nearest(const TrianglePose& pose, double tolerance, const Budget& budget,
                   DistanceInterval& distance) noexcept;
 
+  /// The witnesses. If a search serves several pairs, its owner keeps those of each pair.
+  [[nodiscard]] Witnesses& witnesses() noexcept { return witnesses_; }
+
   struct Near : End {
     bool kept;  ///< a list from earlier poses answered
   };
@@ -82,8 +111,7 @@ class TriangleSearch {
   }
 
   void forget() noexcept {
-    met_.reset();
-    nearest_.reset();
+    witnesses_ = {};
     if (near_) near_->forget();
   }
 
@@ -102,12 +130,8 @@ class TriangleSearch {
                                              const TriangleOptions& options) noexcept;
 
  private:
-  struct Witness {
-    TriangleIds ids;
-    double distance;
-  };
   [[nodiscard]] double radii() const noexcept {
-    return fixed_.bounding_radius() + moving_.bounding_radius();
+    return fixed_->bounding_radius() + moving_->bounding_radius();
   }
   [[nodiscard]] ClusterPose cluster_pose(const TrianglePose& pose) const noexcept;
   [[nodiscard]] ClusterPose cluster_pose(const Eigen::Isometry3d& rigid) const noexcept;
@@ -116,8 +140,8 @@ class TriangleSearch {
   template <class Visitor>
   void begin_nearest(BudgetMeter& meter, Visitor& nearest) noexcept;
 
-  const SphereTree &fixed_, &moving_;
-  const TriangleClusters &fixed_clusters_, &moving_clusters_;
+  const SphereTree *fixed_, *moving_;
+  const TriangleClusters *fixed_clusters_, *moving_clusters_;
   const ClusterKernels& kernels_;
   double largest_coordinate_, longest_edge_;
   ClusterSearch search_;
@@ -125,8 +149,7 @@ class TriangleSearch {
   FoundMemory memory_;
   std::optional<SharedPairs> shared_;
   std::optional<NearCache> near_;
-  std::optional<TriangleIds> met_;
-  std::optional<Witness> nearest_;
+  Witnesses witnesses_;
 };
 
 }  // namespace ist

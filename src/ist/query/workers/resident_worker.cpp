@@ -19,10 +19,19 @@ using namespace std::chrono_literals;
 // Everything here is static and has no destructor, so it still exists when TBB starts a task late,
 // or when a static object with a handle is destroyed last.
 
-// The state of the worker: kAsleep, kPolling, kAtWork, or the address of the offered job.
+// The state of a worker: kAsleep, kPolling, kAtWork, or the address of the offered job.
 using Mail = std::uintptr_t;
 constexpr Mail kAsleep = 0, kPolling = 1, kAtWork = 2;
-alignas(64) std::atomic<Mail> mailbox{kAsleep};
+
+// At most one task of TBB's exists for a worker at any time, queued or running.
+enum class Task : std::uint8_t { kNone, kQueued, kRunning };
+
+struct alignas(64) Worker {
+  std::atomic<Mail> mailbox{kAsleep};
+  std::atomic<Task> task{Task::kNone};
+  std::atomic<int> handles{0};
+};
+Worker workers[ResidentWorker::kMost];
 
 Mail mail_of(Job& job) { return reinterpret_cast<Mail>(&job); }
 
@@ -31,11 +40,6 @@ Mail mail_of(Job& job) { return reinterpret_cast<Mail>(&job); }
 alignas(64) std::atomic<std::int64_t> last_tick{0}, last_period{0};
 
 alignas(64) std::atomic<std::int64_t> wall_used{0}, cpu_used{0};
-
-// At most one task of TBB's exists at any time, queued or running.
-enum class Task : std::uint8_t { kNone, kQueued, kRunning };
-std::atomic<Task> task{Task::kNone};
-std::atomic<int> handles{0};
 
 Clock::time_point time_of(std::int64_t ns) {
   return Clock::time_point(std::chrono::duration_cast<Clock::duration>(Nanoseconds(ns)));
@@ -48,9 +52,11 @@ std::int64_t count(Clock::time_point time) { return Nanoseconds(time.time_since_
 // The worker's side.
 class WorkerLoop {
  public:
+  explicit WorkerLoop(Worker& me) noexcept : mailbox_(me.mailbox), handles_(me.handles) {}
+
   // Runs until there is no handle.
   void run() noexcept {
-    while (handles.load(std::memory_order_seq_cst) > 0) {
+    while (handles_.load(std::memory_order_seq_cst) > 0) {
       const Clock::time_point now = Clock::now();
       const std::int64_t tick = last_tick.load(std::memory_order_relaxed);
       if (tick != tick_) sign_ = now;
@@ -99,20 +105,20 @@ class WorkerLoop {
   void poll() noexcept {
     // Relaxed, here and below, where only the word itself is handed on: it lets an owner offer; the
     // worker's results reach the owner through the job.
-    if (!awake_) mailbox.store(kPolling, std::memory_order_relaxed);
+    if (!awake_) mailbox_.store(kPolling, std::memory_order_relaxed);
     awake_ = true;
     for (int i = 0; i < 16; ++i) {
-      const Mail mail = mailbox.load(std::memory_order_relaxed);
+      const Mail mail = mailbox_.load(std::memory_order_relaxed);
       if (mail != kPolling) return serve(mail);
       pause_briefly();
     }
   }
 
-  // Returns true when the mailbox is closed. A job found in it is done first, and then the mailbox
-  // stays open.
+  // Returns true when the mailbox is closed. A job found in it is done first, and then the
+  // mailbox stays open.
   bool closes() noexcept {
     Mail mail = kPolling;
-    if (!awake_ || mailbox.compare_exchange_strong(mail, kAsleep, std::memory_order_relaxed)) {
+    if (!awake_ || mailbox_.compare_exchange_strong(mail, kAsleep, std::memory_order_relaxed)) {
       awake_ = false;
       return true;
     }
@@ -124,8 +130,8 @@ class WorkerLoop {
     hand_over(HandOver::kSeen);
     // Acquire: pairs with offer(). The job is not read before: its owner may have retracted and
     // destroyed it. If the same job was offered again meanwhile, the later offer is entered.
-    if (!mailbox.compare_exchange_strong(mail, kAtWork, std::memory_order_acquire,
-                                         std::memory_order_relaxed))
+    if (!mailbox_.compare_exchange_strong(mail, kAtWork, std::memory_order_acquire,
+                                          std::memory_order_relaxed))
       return;
     hand_over(HandOver::kEntered);
     Job& job = *reinterpret_cast<Job*>(mail);  // NOLINT(performance-no-int-to-ptr)
@@ -135,10 +141,12 @@ class WorkerLoop {
     }
     // Release: pairs with Job::busy(). The owner may destroy the job at once.
     job.busy_.store(false, std::memory_order_release);
-    mailbox.store(kPolling, std::memory_order_relaxed);
+    mailbox_.store(kPolling, std::memory_order_relaxed);
     sign_ = Clock::now();
   }
 
+  std::atomic<Mail>& mailbox_;
+  std::atomic<int>& handles_;
   bool awake_ = false;
   std::int64_t tick_ = last_tick.load(std::memory_order_relaxed);
   Clock::time_point sign_ = Clock::now();  // making a handle is a sign of life
@@ -147,12 +155,13 @@ class WorkerLoop {
 
 namespace {
 
-void stay(void*) {
+void stay(void* worker) {
+  auto& [mailbox, task, handles] = *static_cast<Worker*>(worker);
   task.store(Task::kRunning);
   Task none = Task::kNone;
   do {
     const ScopedTimerSlack slack;
-    WorkerLoop().run();
+    WorkerLoop(*static_cast<Worker*>(worker)).run();
     task.store(Task::kNone);
     // A handle made just now starts no task if it finds this one. It counts itself and then looks
     // for a task; here the order is the reverse. All four accesses are sequentially consistent, so
@@ -163,19 +172,22 @@ void stay(void*) {
 
 }  // namespace
 
-ResidentWorker::ResidentWorker() {
-  handles.fetch_add(1);
+ResidentWorker::ResidentWorker(std::size_t number) : number_(number) {
+  Worker& worker = workers[number];
+  worker.handles.fetch_add(1);
   Task none = Task::kNone;
-  if (task.compare_exchange_strong(none, Task::kQueued)) run_aside(stay, nullptr);
+  if (worker.task.compare_exchange_strong(none, Task::kQueued)) run_aside(stay, &worker);
 }
 
 ResidentWorker::~ResidentWorker() {
-  if (handles.fetch_sub(1) > 1) return;
+  const Worker& worker = workers[number_];
+  if (workers[number_].handles.fetch_sub(1) > 1) return;
   // A queued task is not waited for: it may never start, and returns at once if it does. A running
   // task is waited for with a limit: after fork() the child has the parent's state without its
   // threads.
   const Clock::time_point give_up = Clock::now() + 20 * kLongNap;
-  while (handles.load() == 0 && task.load() == Task::kRunning && Clock::now() < give_up)
+  while (worker.handles.load() == 0 && worker.task.load() == Task::kRunning &&
+         Clock::now() < give_up)
     std::this_thread::sleep_for(100us);
 }
 
@@ -185,6 +197,7 @@ void ResidentWorker::tick(Clock::time_point now, Nanoseconds period) noexcept {
 }
 
 bool ResidentWorker::offer(Job& job) noexcept {
+  std::atomic<Mail>& mailbox = workers[number_].mailbox;
   if (mailbox.load(std::memory_order_relaxed) != kPolling || job.busy()) return false;
   job.busy_.store(true, std::memory_order_relaxed);
   Mail polling = kPolling;
@@ -197,6 +210,7 @@ bool ResidentWorker::offer(Job& job) noexcept {
 }
 
 bool ResidentWorker::retract(Job& job) noexcept {
+  std::atomic<Mail>& mailbox = workers[number_].mailbox;
   Mail mail = mail_of(job);
   // Relaxed: the worker wrote nothing, and the next offer publishes its own data.
   if (!mailbox.compare_exchange_strong(mail, kPolling, std::memory_order_relaxed)) return false;
@@ -209,7 +223,7 @@ ResidentWorker::Usage ResidentWorker::usage() noexcept {
           Nanoseconds(cpu_used.load(std::memory_order_relaxed))};
 }
 
-bool ResidentWorker::is_there() noexcept { return task.load() == Task::kRunning; }
+bool ResidentWorker::is_there() noexcept { return workers[0].task.load() == Task::kRunning; }
 
 Job::Job(Run run, void* context) noexcept : run_(run), context_(context), process_(getpid()) {}
 

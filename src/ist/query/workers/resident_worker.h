@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 
 #include "ist/base/parallel.h"
@@ -35,8 +36,9 @@ class Job {
   std::atomic<bool> busy_{false};
 };
 
-/// One thread beside the caller's, for every query of the process that has two workers. TBB lends
-/// it while at least one ResidentWorker object lives.
+/// A thread beside the caller's. Number 0 is for every query of the process that has two workers,
+/// and for every World with threads; the others are for worlds alone. TBB lends a thread while at
+/// least one ResidentWorker object of its number lives.
 ///
 /// Waking a sleeping thread is a system call and takes 50 to 150 µs, more than most queries. So no
 /// caller wakes this thread: it sleeps by a timer of its own until just before a tick is expected,
@@ -52,9 +54,13 @@ class Job {
 /// µs after its offer.
 class ResidentWorker {
  public:
-  /// Asks TBB for the thread, if no other object has; it is there 0.1 ms later, or when TBB has one
-  /// to lend. Throws std::bad_alloc, and then no worker comes as long as the process lives.
-  ResidentWorker();
+  /// The number of workers.
+  static constexpr std::size_t kMost = 15;
+
+  /// Asks TBB for the thread, if no other object of its number has; it is there 0.1 ms later, or
+  /// when TBB has one to lend. Throws std::bad_alloc, and then no worker of this number comes as
+  /// long as the process lives. Precondition: number < kMost.
+  explicit ResidentWorker(std::size_t number = 0);
 
   /// The last object waits until the thread has left, a nap of up to 10 ms. Precondition: no job
   /// offered through it is busy.
@@ -86,10 +92,12 @@ class ResidentWorker {
   };
   [[nodiscard]] static Usage usage() noexcept;
 
-  /// Returns whether the thread is there. After the last object is gone it leaves within a nap.
+  /// Returns whether the thread of number 0 is there. After the last object is gone it leaves
+  /// within a nap.
   [[nodiscard]] static bool is_there() noexcept;
 
  private:
+  std::size_t number_;
   // One thread more than TBB would have, so that the loops of a build do not lose one.
   ScopedThreadLimit limit_{thread_count() + 1};
 };

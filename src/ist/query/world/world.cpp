@@ -9,24 +9,32 @@
 #include "ist/base/throw_error.h"
 #include "ist/query/world/world_state.h"
 #include "ist/tree/mesh_source.h"
+#include "ist/tree/tree_parts.h"
 #include "simd/dispatch.h"
 
 namespace ist {
 namespace {
+
+static_assert(kMostThreads == ResidentWorker::kMost + 1);
 
 WorldOptions in_range(const WorldOptions& options) {
   const auto refuse = [](const std::string& what) {
     throw Error(ErrorCode::kArgumentInvalid, "world option " + what);
   };
   if (options.query.workers != 1) {
-    refuse(fmt::format("query.workers is {}: give 1; each pair would have a thread of its own",
-                       options.query.workers));
+    refuse(fmt::format(
+        "query.workers is {}: give 1, and the threads of the world by its option threads",
+        options.query.workers));
   }
   if (!(options.reach >= 0 && options.reach <= std::numeric_limits<double>::max())) {
     refuse(fmt::format("reach is {}: give a finite number of at least 0", options.reach));
   }
-  if (options.most_near > kMostItems) {
-    refuse(fmt::format("most_near is {}: {} is the most", options.most_near, kMostItems));
+  if (options.threads < 1 || options.threads > kMostThreads) {
+    refuse(fmt::format("threads is {}: give 1 to {}", options.threads, kMostThreads));
+  }
+  if (options.query.front_pairs > kMostItems) {
+    refuse(fmt::format("query.front_pairs is {}: {} is the most", options.query.front_pairs,
+                       kMostItems));
   }
   static_cast<void>(select_kernels(options.query.target));
   return options;
@@ -52,11 +60,14 @@ BodyIndex World::add(const SphereTree& tree, const Eigen::Isometry3d& pose, std:
     throw_error(ErrorCode::kArgumentInvalid, "world: no room for '{}': {} bodies are the most",
                 name, kMostBodies);
   }
-  for (const detail::WorldState::Body& other : s.bodies) {
+  for (const auto& at : {s.with_frame, s.with_unit}) {
+    if (!at) continue;
+    const detail::WorldState::Body& other = s.bodies[*at];
     const std::string reason =
         contradiction(tree, fmt::format("'{}'", name), other.tree, fmt::format("'{}'", other.name));
     if (!reason.empty()) throw Error(ErrorCode::kArgumentInvalid, "world: " + reason);
   }
+  SearchPlan::require_addresses(tree, name);
   if (s.options.query.policy) tree.require(*s.options.query.policy, name);
   if (!body_pose(pose)) {
     throw_error(ErrorCode::kPoseInvalid, "world: the pose of '{}' is no rigid motion: {}", name,
@@ -66,48 +77,33 @@ BodyIndex World::add(const SphereTree& tree, const Eigen::Isometry3d& pose, std:
     s.broad.reserve(2 * index + 8);
     s.bodies.reserve(2 * index + 8);
   }
-  s.table.add();  // the last that may fail
-  s.broad.add();
-  s.bodies.push_back({tree, std::move(name), {}, {}, 0});  // zeros are no motion
+  const auto& [parts, facts] = *s.facts.try_emplace(&parts_of(tree), tree).first;
+  s.broad.add();                                                   // nothing fails from here on
+  s.bodies.push_back({tree, &facts, std::move(name), {}, {}, 0});  // zeros are no motion
   s.ready = false;
   const auto number = static_cast<BodyIndex>(index);
+  if (!s.with_frame && tree.frame() != PatientFrame::kUnknown) s.with_frame = number;
+  if (!s.with_unit && tree.source().unit != LengthUnit::kUnknown) s.with_unit = number;
   s.move(number, pose);
   return number;
 }
 
 void World::ignore(BodyIndex a, BodyIndex b) {
   detail::WorldState& s = *state_;
-  std::uint32_t& place = s.table[s.checked(a, b)];
-  if (place < PairTable::kIgnored) s.made[place].reset();
-  place = PairTable::kIgnored;
+  s.ignored.add(s.checked(a, b));
   s.stale = true;
-  ++s.felt;
+  s.reserved.felt.clear();
 }
 
-std::uint64_t World::bytes_for(BodyIndex a, BodyIndex b) const {
+std::uint64_t World::bytes_needed(std::size_t near_pairs) const {
   const ScopedFloatEnvironment environment;
-  return state_->bytes_of(state_->checked(a, b));
-}
-std::uint64_t World::bytes_needed() const {
-  const ScopedFloatEnvironment environment;
-  return state_->bytes_for(state_->all_pairs(), std::numeric_limits<std::uint64_t>::max());
-}
-std::uint64_t World::bytes_needed(std::span<const BodyPair> pairs) const {
-  const ScopedFloatEnvironment environment;
-  return state_->bytes_for(state_->checked(pairs), std::numeric_limits<std::uint64_t>::max());
+  return state_->bytes_for(state_->room_for(near_pairs), state_->sizes(),
+                           std::numeric_limits<std::uint64_t>::max());
 }
 
-void World::prepare() {
+void World::reserve(std::size_t near_pairs) {
   const ScopedFloatEnvironment environment;
-  state_->prepare(state_->all_pairs(), {});
-}
-void World::prepare(std::span<const BodyPair> pairs) {
-  const ScopedFloatEnvironment environment;
-  state_->prepare(state_->checked(pairs), {});
-}
-void World::prepare(std::optional<std::span<const BodyPair>> pairs, const Proceed& proceed) {
-  const ScopedFloatEnvironment environment;
-  state_->prepare(pairs ? state_->checked(*pairs) : state_->all_pairs(), proceed);
+  state_->reserve(near_pairs);
 }
 
 QueryStatus World::set_pose(BodyIndex body, const Eigen::Isometry3d& pose) noexcept {
@@ -124,9 +120,8 @@ void World::forget() noexcept {
   detail::WorldState& s = *state_;
   const detail::Use use(s);
   if (!use) return;
-  for (const auto& memory : s.made) {
-    if (memory) memory->query.forget();
-  }
+  s.reserved.memories.clear();
+  s.reserved.slots.forget();
 }
 
 std::optional<Eigen::Isometry3d> World::pose_of(BodyIndex a, BodyIndex b) const noexcept {
@@ -134,11 +129,6 @@ std::optional<Eigen::Isometry3d> World::pose_of(BodyIndex a, BodyIndex b) const 
   const detail::WorldState& s = *state_;
   if (!s.is_there(a) || !s.is_there(b) || !s.broad.has(a) || !s.broad.has(b)) return std::nullopt;
   return to_isometry(between(s.bodies[a].pose, s.bodies[b].pose));
-}
-
-Query* World::query(BodyIndex a, BodyIndex b) noexcept {
-  detail::WorldState::PairMemory* const memory = state_->find(a, b);
-  return memory != nullptr ? &memory->query : nullptr;
 }
 
 BodyIndex World::body_count() const noexcept {
@@ -149,12 +139,6 @@ std::string_view World::name(BodyIndex body) const noexcept {
   return state_->is_there(body) ? std::string_view(state_->bodies[body].name) : std::string_view();
 }
 
-std::uint64_t World::bytes() const noexcept {
-  std::uint64_t sum = detail::WorldState::Answers::bytes_for(state_->answers.room);
-  for (const auto& memory : state_->made) {
-    if (memory) sum += memory->query.bytes() + memory->manifold.bytes();
-  }
-  return sum;
-}
+std::uint64_t World::bytes() const noexcept { return state_->reserved.bytes; }
 
 }  // namespace ist

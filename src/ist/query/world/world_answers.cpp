@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "ist/query/relative_pose.h"
 #include "ist/query/traversal/budget_meter.h"
 #include "ist/query/world/world_state.h"
 
@@ -42,15 +43,24 @@ void take_leaf_pairs(const QueryResult& result, WorldPair& pair) noexcept {
   pair.pad = result.pad;
   pair.found = result.leaf_pairs;
 }
-void take_distance(const DistanceResult& result, WorldPair& pair) noexcept {
+// `fixed` is the pose of the fixed body in the world.
+void take_distance(const DistanceResult& result, const BodyPose& fixed, WorldPair& pair) noexcept {
   take(result, pair);
+  pair.nearest = result.nearest;
+  if (pair.nearest) {
+    const RelativePose pose{fixed.rotation, fixed.translation};
+    pair.nearest->fixed_point = moved(pose, pair.nearest->fixed_point);
+    pair.nearest->moving_point = moved(pose, pair.nearest->moving_point);
+  }
   if (result.status == QueryStatus::kDone) pair.distance = result.distance;
   pair.narrowest = result.narrowest;
 }
 
 // Asks the query of a pair. The span of the question is free from `pair.first` on.
 void ask_query(const WorldQuestion& question, Query& query, ContactManifold& manifold,
-               const Eigen::Isometry3d& pose, const Budget& budget, WorldPair& pair) noexcept {
+               const PairAtPose& at, const BodyPose& fixed, const Budget& budget,
+               WorldPair& pair) noexcept {
+  const Eigen::Isometry3d pose = to_isometry(at.pose);
   switch (question.kind) {
     case WorldQuestion::kNear:
       break;
@@ -81,7 +91,7 @@ void ask_query(const WorldQuestion& question, Query& query, ContactManifold& man
       break;
     }
     case WorldQuestion::kDistance:
-      take_distance(query.distance(pose, question.tolerance, budget), pair);
+      take_distance(query.distance(pose, question.tolerance, budget), fixed, pair);
       break;
   }
 }
@@ -94,56 +104,109 @@ bool lacks_a_pose(const WorldState& s) noexcept {
     for (BodyIndex other = 0; other < count; ++other) {
       if (other == lost) continue;
       const BodyPair pair{std::min(lost, other), std::max(lost, other)};
-      if (s.table[pair] != PairTable::kIgnored) return true;
+      if (!s.ignored.has(pair)) return true;
     }
   }
   return false;
 }
 
+// Whether a question needs all leaf pairs of each pair.
+bool is_of_leaves(WorldQuestion::Kind kind) noexcept {
+  return kind == WorldQuestion::kContacts || kind == WorldQuestion::kLeafPairs;
+}
+
+// Whether the pairs of bodies share a span.
+bool fills_a_span(WorldQuestion::Kind kind) noexcept {
+  return kind == WorldQuestion::kLeafPairs || kind == WorldQuestion::kTrianglePairs;
+}
+
+// Keeps the memory of the pairs that are near, and gives pair caches to those that move slowly.
+void prepare_memories(WorldState& s, WorldQuestion::Kind kind) noexcept {
+  const NearSet& near = s.reserved.near;
+  PairMemories& memories = s.reserved.memories;
+  memories.keep(near.size(), [&](std::size_t k) { return near[k].bodies; });
+  if (!is_of_leaves(kind)) return;
+  detail::CacheSlots& slots = s.reserved.slots;
+  slots.begin();
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    const PairAtPose& at = near[k];
+    if (at.status != QueryStatus::kDone) continue;
+    const detail::AskedBody a = s.asked(at.bodies.a), b = s.asked(at.bodies.b);
+    slots.note(memories[k], at.pose, a, b,
+               detail::QueryState::policy_of(a.tree, b.tree, s.options.query));
+  }
+}
+
 }  // namespace
+
+void detail::WorldState::ask_pair(std::size_t thread, std::size_t k,
+                                  const Budget& budget) noexcept {
+  const PairAtPose& at = reserved.near[k];
+  WorldPair& pair = reserved.pairs[k];
+  pair.rotation_error = rotation_error_of(pair.bodies);
+  if (at.status != QueryStatus::kDone || budget.is_past()) {
+    fill_unasked(round.question.kind, pair);
+    return;
+  }
+  PairMemory& memory = reserved.memories[k];
+  PairAsker& asker = *reserved.askers[thread];
+  const bool of_leaves = is_of_leaves(round.question.kind);
+  Query& query = asker.bind(asked(at.bodies.a), asked(at.bodies.b), memory, of_leaves,
+                            of_leaves ? reserved.slots.of(memory) : nullptr);
+  ContactManifold& manifold = reserved.manifolds[k];
+  if (round.question.kind == WorldQuestion::kContacts) asker.bind(manifold);
+  ask_query(round.question, query, manifold, at, bodies[at.bodies.a].pose, budget, pair);
+  asker.keep(memory);
+}
 
 WorldAnswer World::ask(const WorldQuestion& question, const Budget& budget) noexcept {
   const ScopedFloatEnvironment environment;
   WorldState& s = *state_;
   const Use use(s);
   if (!use) return {.status = QueryStatus::kBusy, .complete = false};
-  if (question.kind == WorldQuestion::kContacts) ++s.felt;
+  WorldState::Reserved& reserved = s.reserved;
+  if (question.kind == WorldQuestion::kContacts) reserved.felt.clear();
   if (!s.ready) return {.status = QueryStatus::kNotPrepared, .complete = false};
   s.find_near();
-  const NearSet& near = s.answers.near;
-  const std::span<WorldPair> pairs = std::span(s.answers.pairs).first(near.size());
+  const NearSet& near = reserved.near;
+  const std::span<WorldPair> pairs = std::span(reserved.pairs).first(near.size());
+  for (std::size_t k = 0; k < pairs.size(); ++k) pairs[k] = by_roots(near[k]);
   const bool truncated = near.count() > near.size();
   WorldAnswer all{
       .complete = !truncated, .truncated = truncated, .near_pairs = near.count(), .pairs = pairs};
-  std::uint64_t written = 0;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const PairAtPose& at = near[k];
-    WorldPair& pair = pairs[k];
-    pair = by_roots(at);
-    if (question.kind == WorldQuestion::kNear) {
-      ++all.sphere_tests;
-      continue;
+  if (question.kind == WorldQuestion::kNear || pairs.empty()) {
+    all.sphere_tests = pairs.size();
+    return all;
+  }
+
+  prepare_memories(s, question.kind);
+  s.round = {question, budget};
+  if (!fills_a_span(question.kind) && !budget.has_tests()) {
+    reserved.pool->run(pairs.size());
+  } else {
+    std::uint64_t written = 0, spent = 0;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      pairs[k].first = written;
+      s.ask_pair(0, k, BudgetMeter(budget, spent).rest());
+      written += pairs[k].written;
+      spent += pairs[k].sphere_tests;
     }
-    pair.first = written;
-    if (at.status != QueryStatus::kDone || budget.is_past()) {
-      fill_unasked(question.kind, pair);
-    } else {
-      WorldState::PairMemory& memory = s.memory(at);
-      ask_query(question, memory.query, memory.manifold, to_isometry(at.pose),
-                BudgetMeter(budget, all.sphere_tests).rest(), pair);
-      if (pair.manifold != nullptr) memory.felt = s.felt;
-    }
-    pair.rotation_error = s.rotation_error_of(pair.bodies);
-    written += pair.written;
+  }
+  for (const WorldPair& pair : pairs) {
     all.sphere_tests += pair.sphere_tests;
     all.complete = all.complete && pair.status == QueryStatus::kDone && pair.complete;
+    if (pair.manifold != nullptr) reserved.felt.push_back({pair.bodies, pair.manifold});
   }
   return all;
 }
 
 const ContactManifold* World::manifold(BodyIndex a, BodyIndex b) const noexcept {
-  const WorldState::PairMemory* const memory = state_->find(a, b);
-  return memory != nullptr && memory->felt == state_->felt ? &memory->manifold : nullptr;
+  const std::vector<WorldState::Felt>& felt = state_->reserved.felt;
+  const BodyPair pair{std::min(a, b), std::max(a, b)};
+  const auto at = std::lower_bound(
+      felt.begin(), felt.end(), pair,
+      [](const WorldState::Felt& one, BodyPair wanted) { return one.bodies < wanted; });
+  return at != felt.end() && at->bodies == pair ? at->manifold : nullptr;
 }
 
 WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
@@ -155,28 +218,36 @@ WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
 
   double lower = s.find_candidates();  // of all pairs that are done with
   double upper = kLargestDistance;
-  const std::vector<WorldState::Candidate>& candidates = s.answers.candidates;
-  const std::span<WorldPair> pairs = std::span(s.answers.nearest).first(candidates.size());
+  std::vector<WorldState::Candidate>& candidates = s.reserved.candidates;
+  PairMemories& memories = s.reserved.memories;
+  memories.keep(candidates.size(), [&](std::size_t k) { return candidates[k].bodies; });
+  const std::span<WorldPair> pairs = std::span(s.reserved.nearest).first(candidates.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     pairs[k] = by_roots(s.look(candidates[k].bodies));
     fill_unasked(WorldQuestion::kDistance, pairs[k]);
     upper = std::min(upper, pairs[k].roots.upper);
+    candidates[k].lower = pairs[k].roots.lower;
   }
-  std::sort(pairs.begin(), pairs.end(), [](const WorldPair& a, const WorldPair& b) {
-    return a.roots.lower < b.roots.lower || (a.roots.lower == b.roots.lower && a.bodies < b.bodies);
-  });
+  std::sort(candidates.begin(), candidates.end());
 
   const double width = tolerance > 0 ? tolerance : 0;
   std::uint64_t spent = 0;
-  for (WorldPair& pair : pairs) {
-    // No later pair is nearer than the roots of this one.
+  for (const WorldState::Candidate& candidate : candidates) {
+    const std::size_t k = memories.place_of(candidate.bodies);
+    WorldPair& pair = pairs[k];
+    // No later candidate is nearer than the roots of this one.
     const bool enough =
         pair.roots.lower > upper || upper - std::min(lower, pair.roots.lower) <= width;
     if (!enough && pair.status == QueryStatus::kDone && !budget.is_past()) {
       const PairAtPose at = s.look(pair.bodies);
-      take_distance(s.memory(at).query.distance(to_isometry(at.pose), tolerance,
-                                                BudgetMeter(budget, spent).rest()),
-                    pair);
+      PairMemory& memory = memories[k];
+      detail::PairAsker& asker = *s.reserved.askers.front();
+      Query& query =
+          asker.bind(s.asked(pair.bodies.a), s.asked(pair.bodies.b), memory, false, nullptr);
+      take_distance(
+          query.distance(to_isometry(at.pose), tolerance, BudgetMeter(budget, spent).rest()),
+          s.bodies[pair.bodies.a].pose, pair);
+      asker.keep(memory);
       spent += pair.sphere_tests;
     }
     pair.rotation_error = s.rotation_error_of(pair.bodies);
@@ -190,15 +261,13 @@ WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
   for (const WorldPair& pair : pairs) {
     all.sphere_tests += pair.sphere_tests;
     const double end = pair.distance.upper;
-    if (all.nearest && !(end < least || (end == least && pair.bodies < *all.nearest))) continue;
+    if (all.nearest && !(end < least)) continue;
     all.nearest = pair.bodies;
     least = end;
   }
   const bool lost = lacks_a_pose(s);
   if (lost) all.status = QueryStatus::kInvalidPose;
   all.complete = !lost && upper - all.distance.lower <= width;
-  std::sort(pairs.begin(), pairs.end(),
-            [](const WorldPair& a, const WorldPair& b) { return a.bodies < b.bodies; });
   all.pairs = pairs;
   return all;
 }

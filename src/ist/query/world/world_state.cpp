@@ -9,10 +9,6 @@
 
 namespace ist {
 
-bool NearSet::is_before(const Entry& a, const Entry& b) noexcept {
-  return a.prepared != b.prepared ? a.prepared : a.bodies < b.bodies;
-}
-
 void NearSet::clear() noexcept {
   pairs_.clear();
   order_.clear();
@@ -21,26 +17,22 @@ void NearSet::clear() noexcept {
 
 void NearSet::add(const PairAtPose& pair) noexcept {
   ++count_;
-  Entry entry{pair.place < PairTable::kIgnored, pair.bodies,
-              static_cast<std::uint32_t>(order_.size())};
+  Entry entry{pair.bodies, static_cast<std::uint32_t>(order_.size())};
   if (order_.size() < room_) {  // both lists have this room
     pairs_.push_back(pair);
     order_.push_back(entry);
-    if (order_.size() == room_) std::make_heap(order_.begin(), order_.end(), is_before);
+    if (order_.size() == room_) std::make_heap(order_.begin(), order_.end());
     return;
   }
-  if (room_ == 0 || !is_before(entry, order_.front())) return;
-  std::pop_heap(order_.begin(), order_.end(), is_before);
+  if (room_ == 0 || !(entry < order_.front())) return;
+  std::pop_heap(order_.begin(), order_.end());
   entry.at = order_.back().at;
   pairs_[entry.at] = pair;
   order_.back() = entry;
-  std::push_heap(order_.begin(), order_.end(), is_before);
+  std::push_heap(order_.begin(), order_.end());
 }
 
-void NearSet::finish() noexcept {
-  std::sort(order_.begin(), order_.end(),
-            [](const Entry& a, const Entry& b) { return a.bodies < b.bodies; });
-}
+void NearSet::finish() noexcept { std::sort(order_.begin(), order_.end()); }
 
 }  // namespace ist
 
@@ -58,17 +50,6 @@ double moved_error(const SphereTree& moving, const BodyPose& pose) noexcept {
 }
 
 }  // namespace
-
-WorldState::PairMemory::PairMemory(BodyPair pair, const Body& a, const Body& b,
-                                   const WorldOptions& options)
-    : bodies(pair),
-      query(a.tree, b.tree, options.query),
-      manifold(a.tree, b.tree, query.policy(), options.manifold) {}
-
-WorldState::Answers::Answers(std::size_t most)
-    : room(most), near(most), pairs(most), nearest(most) {
-  candidates.reserve(most);
-}
 
 void WorldState::move(BodyIndex index, const Eigen::Isometry3d& pose) noexcept {
   Body& body = bodies[index];
@@ -89,7 +70,7 @@ void WorldState::move(BodyIndex index, const Eigen::Isometry3d& pose) noexcept {
 }
 
 PairAtPose WorldState::look(BodyPair pair) const noexcept {
-  PairAtPose at{pair, QueryStatus::kInvalidPose, kUnknown, true, table[pair], {}};
+  PairAtPose at{pair, QueryStatus::kInvalidPose, kUnknown, true, {}};
   if (!broad.has(pair.a) || !broad.has(pair.b)) return at;
   const SphereTree &a = bodies[pair.a].tree, &b = bodies[pair.b].tree;
   at.pose = between(bodies[pair.a].pose, bodies[pair.b].pose);
@@ -108,17 +89,17 @@ PairAtPose WorldState::look(BodyPair pair) const noexcept {
       test_roots(a, b, QueryState::policy_of(a, b, options.query), *relative, margin);
   at.overlap = roots.overlap;
   at.roots = roots.distance;
-  at.status = at.place < PairTable::kIgnored ? QueryStatus::kDone : QueryStatus::kNotPrepared;
+  at.status = QueryStatus::kDone;
   return at;
 }
 
 void WorldState::find_near() noexcept {
   if (!stale) return;
   stale = false;
-  NearSet& near = answers.near;
+  NearSet& near = reserved.near;
   near.clear();
   const auto add = [&](BodyPair pair) {
-    if (table[pair] == PairTable::kIgnored) return;
+    if (ignored.has(pair)) return;
     const PairAtPose at = look(pair);
     if (at.overlap) near.add(at);
   };
@@ -135,16 +116,16 @@ void WorldState::find_near() noexcept {
 }
 
 double WorldState::find_candidates() noexcept {
-  std::vector<Candidate>& list = answers.candidates;
+  std::vector<Candidate>& list = reserved.candidates;
   list.clear();
   double within = kLargestDistance, rest = kLargestDistance;
   broad.nearest([&](BodyPair pair, const DistanceInterval& distance) {
-    if (table[pair] == PairTable::kIgnored) return false;
+    if (ignored.has(pair)) return false;
     within = std::min(within, distance.upper);
     const Candidate candidate{distance.lower, pair};
-    if (list.size() < answers.room) {
+    if (list.size() < reserved.room) {
       list.push_back(candidate);
-      if (list.size() == answers.room) std::make_heap(list.begin(), list.end());
+      if (list.size() == reserved.room) std::make_heap(list.begin(), list.end());
       return true;
     }
     // The one farthest away leaves.
@@ -159,7 +140,8 @@ double WorldState::find_candidates() noexcept {
     return true;
   });
   std::erase_if(list, [&](const Candidate& candidate) { return candidate.lower > within; });
-  std::sort(list.begin(), list.end());
+  std::sort(list.begin(), list.end(),
+            [](const Candidate& a, const Candidate& b) { return a.bodies < b.bodies; });
   return rest;
 }
 

@@ -4,48 +4,37 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <limits>
+#include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "ist/base/float_environment.h"
 #include "ist/query/query_state.h"
+#include "ist/query/workers/resident_pool.h"
 #include "ist/query/world/body_pose.h"
 #include "ist/query/world/broad_phase.h"
+#include "ist/query/world/pair_asker.h"
+#include "ist/query/world/pair_memory.h"
 #include "ist/query/world/world.h"
 
 namespace ist {
 
-/// The place of each pair's query, of all pairs of some bodies.
-class PairTable {
+/// The pairs that a world never looks at.
+class IgnoredPairs {
  public:
-  static constexpr std::uint32_t kNoQuery = std::numeric_limits<std::uint32_t>::max();
-  static constexpr std::uint32_t kIgnored = kNoQuery - 1;
-
-  /// Adds a body, whose pairs with all others have no query.
-  void add() {
-    places_.insert(places_.end(), bodies_, kNoQuery);
-    ++bodies_;
+  void add(BodyPair pair) { keys_.insert(key(pair)); }
+  [[nodiscard]] bool has(BodyPair pair) const noexcept {
+    return !keys_.empty() && keys_.count(key(pair)) > 0;
   }
-  /// Precondition: a < b < the number of bodies.
-  [[nodiscard]] std::uint32_t& operator[](BodyPair pair) noexcept { return places_[at(pair)]; }
-  [[nodiscard]] std::uint32_t operator[](BodyPair pair) const noexcept { return places_[at(pair)]; }
-  /// Takes all queries out.
-  void clear() noexcept {
-    std::replace_if(
-        places_.begin(), places_.end(), [](auto at) { return at < kIgnored; }, kNoQuery);
-  }
-  /// Returns the number of all pairs, ignored or not.
-  [[nodiscard]] std::size_t size() const noexcept { return places_.size(); }
+  [[nodiscard]] std::size_t size() const noexcept { return keys_.size(); }
 
  private:
-  static std::size_t at(BodyPair pair) noexcept {
-    return std::size_t{pair.b} * (pair.b - 1) / 2 + pair.a;
-  }
-  std::vector<std::uint32_t> places_;
-  std::size_t bodies_ = 0;
+  static std::uint64_t key(BodyPair pair) noexcept { return std::uint64_t{pair.a} << 32 | pair.b; }
+  std::unordered_set<std::uint64_t> keys_;
 };
 
 /// A pair of bodies at their poses, for the world's own use.
@@ -54,13 +43,11 @@ struct PairAtPose {
   QueryStatus status;      ///< as WorldPair has it before the pair is asked
   DistanceInterval roots;  ///< as WorldPair has it
   bool overlap;            ///< the roots are no farther apart than they need be to be near
-  std::uint32_t place;     ///< of its query; PairTable::kNoQuery without one
   BodyPose pose;           ///< of the later body in the first one's coordinates
 };
 
-/// The pairs that are near, in bounded memory: where there is no room for all, those with a query
-/// come before those without, and then the first by BodyPair. So it does not matter in which order
-/// pairs are found.
+/// The near pairs, in bounded memory. If there is no room for all, it keeps the first by BodyPair,
+/// in whatever order they are added.
 class NearSet {
  public:
   NearSet() = default;
@@ -85,11 +72,10 @@ class NearSet {
 
  private:
   struct Entry {
-    bool prepared;
     BodyPair bodies;
     std::uint32_t at;
+    friend bool operator<(const Entry& a, const Entry& b) noexcept { return a.bodies < b.bodies; }
   };
-  static bool is_before(const Entry& a, const Entry& b) noexcept;
 
   std::size_t room_ = 0;
   std::vector<PairAtPose> pairs_;
@@ -105,18 +91,11 @@ namespace ist::detail {
 struct WorldState {
   struct Body {
     SphereTree tree;  // which shares the content
+    const TreeFacts* facts;
     std::string name;
     std::array<double, 16> given;  // the pose as it was given
     BodyPose pose;                 // projected
     double rotation_error;         // of the pose as it was given
-  };
-  /// The memory of a pair from call to call.
-  struct PairMemory {
-    PairMemory(BodyPair pair, const Body& a, const Body& b, const WorldOptions& options);
-    BodyPair bodies;
-    Query query;
-    ContactManifold manifold;
-    std::uint64_t felt = 0;  // the question of contacts that filled the manifold last
   };
   /// A pair that may be the nearest, by the balls of its bodies.
   struct Candidate {
@@ -124,16 +103,32 @@ struct WorldState {
     BodyPair bodies;
     friend auto operator<=>(const Candidate&, const Candidate&) = default;
   };
-  /// The room for answers.
-  struct Answers {
-    Answers() = default;
-    explicit Answers(std::size_t room);
-    /// Returns the bytes that they reserve.
-    static std::uint64_t bytes_for(std::size_t room) noexcept;
-    std::size_t room = 0;
+  /// A pair that the last question of contacts asked.
+  struct Felt {
+    BodyPair bodies;
+    const ContactManifold* manifold;
+  };
+  /// The memory for a number of near pairs.
+  struct Reserved {
+    Reserved() = default;
+    Reserved(std::size_t room, WorldState& world, const AskerRoom& sizes);
+
+    std::size_t room = 0;  // for pairs; 0: nothing is reserved
+    std::uint64_t bytes = 0;
     NearSet near;
+    PairMemories memories;
     std::vector<Candidate> candidates;
-    std::vector<WorldPair> pairs, nearest;  // of ask(), of distance()
+    std::vector<WorldPair> pairs, nearest;   // of ask(), of distance()
+    std::vector<ContactManifold> manifolds;  // by the places of near pairs
+    std::vector<Felt> felt;                  // in the order of BodyPair
+    CacheSlots slots;
+    std::vector<std::unique_ptr<PairAsker>> askers;  // by thread
+    std::unique_ptr<ResidentPool> pool;              // the last: its workers use all others
+  };
+  /// A question to near pairs, while it is asked.
+  struct Round {
+    WorldQuestion question;
+    Budget budget;
   };
 
   explicit WorldState(const WorldOptions& options);
@@ -141,20 +136,13 @@ struct WorldState {
   /// Returns a pair in order. Throws kArgumentInvalid for bodies that are
   /// not there, or the same.
   [[nodiscard]] BodyPair checked(BodyIndex a, BodyIndex b) const;
-  /// Returns the pairs in their order, each once. Throws so for each of them, and for one
-  /// that is ignored.
-  [[nodiscard]] std::vector<BodyPair> checked(std::span<const BodyPair> pairs) const;
-  /// Returns all pairs that are not ignored, in their order.
-  [[nodiscard]] std::vector<BodyPair> all_pairs() const;
-  /// Returns how many pairs one answer may list if so many are prepared.
-  [[nodiscard]] std::size_t room_for(std::size_t prepared) const noexcept;
-  /// Returns the bytes of the query and the manifold of a pair.
-  [[nodiscard]] std::uint64_t bytes_of(BodyPair pair) const;
-  /// Returns the bytes that prepare() takes for these pairs. Throws kMemoryLimit beyond `limit`,
-  /// naming the pair that was too much.
-  [[nodiscard]] std::uint64_t bytes_for(std::span<const BodyPair> pairs, std::uint64_t limit) const;
-  /// `proceed` may be empty.
-  void prepare(std::span<const BodyPair> pairs, const Proceed& proceed);
+  /// Returns for how many pairs reserve() makes room.
+  [[nodiscard]] std::size_t room_for(std::size_t near_pairs) const noexcept;
+  [[nodiscard]] AskerRoom sizes() const;
+  /// Returns the bytes that reserve() takes for `room` pairs. Throws kMemoryLimit beyond `limit`.
+  [[nodiscard]] std::uint64_t bytes_for(std::size_t room, const AskerRoom& sizes,
+                                        std::uint64_t limit) const;
+  void reserve(std::size_t near_pairs);
 
   void move(BodyIndex body, const Eigen::Isometry3d& pose) noexcept;
   [[nodiscard]] bool is_there(BodyIndex body) const noexcept { return body < bodies.size(); }
@@ -162,32 +150,30 @@ struct WorldState {
   [[nodiscard]] double rotation_error_of(BodyPair pair) const noexcept {
     return std::max(bodies[pair.a].rotation_error, bodies[pair.b].rotation_error);
   }
-  /// Returns the memory of two bodies in either order, or null if they have none.
-  [[nodiscard]] PairMemory* find(BodyIndex a, BodyIndex b) const noexcept {
-    if (!is_there(a) || !is_there(b) || a == b) return nullptr;
-    const std::uint32_t place = table[{std::min(a, b), std::max(a, b)}];
-    return place < PairTable::kIgnored ? made[place].get() : nullptr;
+  [[nodiscard]] AskedBody asked(BodyIndex body) const noexcept {
+    return {bodies[body].tree, *bodies[body].facts};
   }
-  /// Returns the query of a pair that is prepared.
-  [[nodiscard]] PairMemory& memory(const PairAtPose& pair) noexcept { return *made[pair.place]; }
+  /// Asks near pair `k` the question of the round.
+  void ask_pair(std::size_t thread, std::size_t k, const Budget& budget) noexcept;
   /// Returns a pair at its poses.
   [[nodiscard]] PairAtPose look(BodyPair pair) const noexcept;
   /// Finds the pairs that are near, if a body was moved since.
   void find_near() noexcept;
-  /// Lists the pairs that may be nearest, by their balls. Returns a lower bound of the distance of
-  /// all others that are not farther than one of these.
+  /// Lists the pairs that may be nearest, by their balls, in the order of BodyPair. Returns a lower
+  /// bound of the distance of all others that are not farther than one of these.
   [[nodiscard]] double find_candidates() noexcept;
 
   WorldOptions options;
+  std::map<const TreeParts*, TreeFacts> facts;  // by content
   std::vector<Body> bodies;
+  std::optional<BodyIndex> with_frame, with_unit;  // the first bodies whose frame and unit is known
   BroadPhase broad;
-  PairTable table;
-  std::vector<std::unique_ptr<PairMemory>> made;  // by the table's places
-  Answers answers;
-  bool ready = false;      // the answers have room for these bodies
-  bool stale = true;       // a body was moved since the last find_near()
-  std::uint64_t felt = 1;  // counts questions of contacts, and what ends their contacts
+  IgnoredPairs ignored;
+  Round round;
+  bool ready = false;  // these bodies are reserved for
+  bool stale = true;   // a body was moved since the last find_near()
   std::atomic_flag in_use;
+  Reserved reserved;  // the last: its workers use all others
 };
 
 }  // namespace ist::detail

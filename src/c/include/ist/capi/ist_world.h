@@ -14,20 +14,28 @@
 extern "C" {
 #endif
 
-/** Bodies at poses, and the queries of their pairs. */
+/** Bodies at poses. */
 typedef struct ist_world ist_world;
 
 /** The most bodies of a world. */
 #define IST_MOST_BODIES 4096u
+/** The most threads of a world. */
+#define IST_MOST_THREADS 16
+/** A number of near pairs: all pairs of the world. */
+#define IST_ALL_PAIRS UINT64_MAX
 
 /** What a world asks, and the memory that it may reserve. */
 typedef struct ist_world_options {
   size_t struct_size;             /**< the size of this struct, bytes */
-  const ist_query_options* query; /**< of each pair's query; may be NULL; workers: 1. With contacts
-                                     -1 a pair has the sums alone */
+  const ist_query_options* query; /**< of the query of all pairs; may be NULL; workers: 1. With
+                                     contacts -1 a pair has the sums alone */
   double reach;                   /**< pairs whose root bounds are no farther apart are near too */
-  uint64_t most_near;  /**< most pairs of an answer beyond those prepared; default 4096, to 2^26 */
-  uint64_t max_memory; /**< memory limit of queries, contacts and answers, bytes; default 4 GiB */
+  uint64_t pair_caches; /**< most pairs that have a pair cache at a time, if query->front_pairs is
+                           over 0; default 16 */
+  uint64_t max_memory;  /**< memory limit, bytes; default 4 GiB */
+  int32_t threads;      /**< threads that ask pairs, 1 to IST_MOST_THREADS; default 1. The answer
+                           does not depend on it */
+  int32_t reserved;     /**< zero */
 } ist_world_options;
 
 /** Creates a world without bodies. `options` may be NULL. Errors: IST_ARGUMENT_INVALID,
@@ -37,39 +45,30 @@ IST_C_API ist_status ist_world_create(const ist_world_options* options,
 
 /** Adds a body; `body` takes its number, from 0 in the order of adding. `pose` and `name` may be
  * NULL: the body is then at its mesh's place, and messages name it by its number. The tree may be
- * freed afterwards. The world is not
- * prepared then. Errors: IST_POLICY_MISSING, IST_POSE_INVALID; IST_ARGUMENT_INVALID beyond
- * IST_MOST_BODIES. */
+ * freed afterwards. Questions
+ * then give IST_NOT_PREPARED until the next ist_world_reserve. Errors: IST_POLICY_MISSING,
+ * IST_POSE_INVALID, IST_MEMORY_LIMIT; IST_ARGUMENT_INVALID beyond IST_MOST_BODIES. */
 IST_C_API ist_status ist_world_add(ist_world* world, const ist_tree* tree, const double pose[16],
                                    const char* name, uint32_t* body) IST_NOEXCEPT;
 
-/** Never looks at a pair of bodies again, and frees its memory. Errors: IST_ARGUMENT_INVALID for a
+/** Never looks at a pair of bodies again. Errors: IST_ARGUMENT_INVALID for a
  * body that is not there. */
 IST_C_API ist_status ist_world_ignore(ist_world* world, uint32_t a, uint32_t b) IST_NOEXCEPT;
 
-/** Two bodies, in either order. */
-typedef struct ist_body_pair {
-  uint32_t a, /**< a body */
-      b;      /**< another one */
-} ist_body_pair;
+/** Gives the bytes that ist_world_reserve takes for so many near pairs. */
+IST_C_API ist_status ist_world_bytes_needed(ist_world* world, uint64_t near_pairs,
+                                            uint64_t* bytes) IST_NOEXCEPT;
 
-/** Gives the bytes that ist_world_prepare takes in all for `count` pairs, or with `pairs` NULL for
- * all pairs that are not ignored. Errors: IST_ARGUMENT_INVALID. Cost: 10 us per pair. */
-IST_C_API ist_status ist_world_bytes_needed(ist_world* world, const ist_body_pair* pairs,
-                                            size_t count, uint64_t* bytes) IST_NOEXCEPT;
-
-/** Reserves a query and contacts for `count` pairs, or with `pairs` NULL for all pairs that are not
- * ignored, and the room for answers. Pairs that had them and are among these keep them; others
- * lose them. `progress` may be NULL. Errors: IST_MEMORY_LIMIT, and the message names the pair that
- * is too much; IST_OUT_OF_MEMORY, IST_ARGUMENT_INVALID, IST_CANCELLED; the world is then as it was.
- * Cost: 0.1 to 4 ms per pair. */
-IST_C_API ist_status ist_world_prepare(ist_world* world, const ist_body_pair* pairs, size_t count,
-                                       const ist_progress* progress) IST_NOEXCEPT;
+/** Reserves memory for all bodies, and for `near_pairs` pairs that are near at a time, or
+ * IST_ALL_PAIRS: at least for one. If more are near, an answer lists the first of them. Frees what
+ * was reserved before, and forgets earlier questions. Errors: IST_MEMORY_LIMIT, IST_OUT_OF_MEMORY,
+ * IST_ARGUMENT_INVALID; the world is then as it was. Cost: some milliseconds, and 1 us per pair. */
+IST_C_API ist_status ist_world_reserve(ist_world* world, uint64_t near_pairs) IST_NOEXCEPT;
 
 /** The size of a world. */
 typedef struct ist_world_info {
   size_t struct_size; /**< the size of this struct, bytes */
-  uint64_t bytes;     /**< memory reserved for queries, contacts and answers */
+  uint64_t bytes;     /**< memory that ist_world_reserve took */
   uint64_t bodies;    /**< bodies added */
 } ist_world_info;
 
@@ -106,7 +105,8 @@ typedef struct ist_world_question {
 typedef struct ist_world_pair {
   uint32_t a,            /**< the body added first, which is the fixed one */
       b;                 /**< the other body, the moving one */
-  ist_status status;     /**< IST_OK; IST_NOT_PREPARED, IST_POSE_INVALID, IST_TRIANGLES_MISSING */
+  ist_status status;     /**< IST_OK; IST_POSE_INVALID, IST_TRIANGLES_MISSING; IST_NOT_PREPARED if
+                            no double holds the way between the bodies */
   int32_t answer;        /**< IST_ASK_INTERSECTS: IST_ANSWER_... */
   int32_t complete;      /**< 1: no budget ended the search; of a distance: it is narrow enough. Of
                             IST_ASK_NEAR 0 */
@@ -131,7 +131,8 @@ typedef struct ist_world_result {
   uint64_t written;      /**< valid elements of the array */
   uint64_t sphere_tests; /**< of all pairs */
   int32_t complete;      /**< 1: every near pair was asked, and its answer is complete */
-  int32_t truncated;     /**< 1: the array, or the room of the world, was too short for all pairs */
+  int32_t truncated;     /**< 1: the array, or the room that was reserved, was too short for all
+                            pairs. The answer of the others is unknown */
 } ist_world_result;
 
 /** Asks each pair of bodies that is near a question. IST_ASK_NEAR lists the pairs with the distance
@@ -139,7 +140,7 @@ typedef struct ist_world_result {
  * contacts in the world's memory: the sums of a pair make a force only if its `complete` is 1.
  * `pairs` may be NULL if `capacity` is 0. `budget` may be NULL; it is one for the whole call: pairs
  * are asked in their order until it is spent. The answer depends on the poses of now alone. Errors:
- * IST_NOT_PREPARED before ist_world_prepare; IST_ARGUMENT_INVALID. Cost: 20 ns per body, 0.5 us per
+ * IST_NOT_PREPARED before ist_world_reserve; IST_ARGUMENT_INVALID. Cost: 20 ns per body, 0.5 us per
  * near pair, and what each pair's query costs. [real time] */
 IST_C_API ist_status ist_world_ask(ist_world* world, const ist_world_question* question,
                                    const ist_budget* budget, ist_world_pair* pairs, size_t capacity,
@@ -170,13 +171,13 @@ typedef struct ist_least_distance {
 } ist_least_distance;
 
 /** Bounds the least distance of all pairs that are not ignored, near or not, by an interval no
- * wider than `tolerance`. Pairs that are not prepared count with their roots. Errors:
+ * wider than `tolerance`. Pairs that were not reserved for count with their roots. Errors:
  * IST_ARGUMENT_INVALID, IST_NOT_PREPARED. [real time] */
 IST_C_API ist_status ist_world_distance(ist_world* world, double tolerance,
                                         const ist_budget* budget,
                                         ist_least_distance* result) IST_NOEXCEPT;
 
-/** Forgets what earlier poses left behind in the queries. [real time] */
+/** Forgets what earlier poses left behind. [real time] */
 IST_C_API ist_status ist_world_forget(ist_world* world) IST_NOEXCEPT;
 
 /** Frees a world. */
