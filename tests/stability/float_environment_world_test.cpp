@@ -95,7 +95,7 @@ TEST_P(FloatEnvironmentOfAWorld, ChangesNoPose) {
 }
 
 TEST_P(FloatEnvironmentOfAWorld, ChangesNoMemory) {
-  changes_no_world("World::reserve and bytes_needed", 40, [](World& world, Record& record) {
+  changes_no_world("World::reserve and bytes_needed", 32, [](World& world, Record& record) {
     record.add(world.bytes());
     record.add(world.bytes_needed());
     record.add(world.bytes_needed(2));

@@ -294,7 +294,7 @@ void Query::forget() noexcept {
   detail::QueryState& s = *state_;
   const detail::Use use(s);
   if (!use) return;
-  if (s.triangles) s.triangles->witnesses() = {};
+  if (s.triangles) s.triangles->forget();
   if (s.cached) s.cached->forget();
 }
 

@@ -50,7 +50,7 @@ struct QueryOptions {
   /// bit by bit, but for `sphere_tests`, `distance` and `found`. With a budget of tests every query
   /// searches. A query that a stream or a deadline ended makes nothing for the next one.
   std::size_t front_pairs = 0;
-  /// The most near pairs to keep from one pose to the next, 400 bytes each, and the memory of one
+  /// The most near pairs to keep from one pose to the next, 336 bytes each, and the memory of one
   /// more search of triangles. 0: none are kept, and every near_pairs() searches.
   ///
   /// For a body that moves by less than some half of the margin from query to query. The answers
@@ -68,8 +68,8 @@ struct QueryOptions {
 ///
 /// For one pair of trees and one pose every answer is the same, bit by bit: on every instruction
 /// set, with one worker or two, and for all options of memory. A query keeps some of its earlier
-/// questions. Only `sphere_tests`, the ends of distance(), and the numbers that `front_pairs` names
-/// depend on them. A budget of tests ignores them.
+/// questions. Only `sphere_tests`, the ends and the nearest triangles of distance(), and the
+/// numbers that `front_pairs` and `near_pairs` name depend on them. A budget of tests ignores them.
 ///
 /// The constructor reserves all memory and makes the first call of the kernels. A verb allocates
 /// nothing, locks nothing and makes no system call; inside() may do so.
@@ -192,9 +192,10 @@ class IST_API Query {
   static constexpr std::size_t kMostNearParts = 15;
 
   /// Lists the parts of two triangles that are no farther apart than a margin: each corner above
-  /// the face of the other triangle, and of each two edges the points that are closest. A motion of
-  /// the bodies that keeps all of them apart keeps the triangles apart to first order, as one
-  /// closest point does not. Status as near_pairs(); kNoSuchTriangle for an index out of range.
+  /// the face of the other triangle, and of each two edges the points that are closest. Parts of
+  /// triangles that intersect have distances too, and tell no way apart. A motion of the bodies
+  /// that keeps all of them apart keeps the triangles apart to first order, as one closest point
+  /// does not. Status as near_pairs(); kNoSuchTriangle for an index out of range.
   ///
   /// @param pose      maps moving mesh coordinates to fixed mesh coordinates
   /// @param triangles by their indices in the meshes

@@ -28,7 +28,7 @@ namespace detail {
 /// the distance, for triangles the pairs or the interval. If only tests are limited, the answer is
 /// the same on every machine and in every run. If a deadline ended a search, a limit of as many
 /// tests ends it at the same place. An answer from kept pairs is an exception: if a deadline ended
-/// it, the answer holds no pairs.
+/// it, the answer holds no leaf pairs, and any of the near pairs.
 struct Budget {
   /// The clock that deadlines are times of.
   using Clock = std::chrono::steady_clock;
@@ -144,14 +144,15 @@ enum class TrianglePart : std::uint8_t {
 /// in mesh units.
 struct IST_API NearPair {
   TrianglePair triangles = {};       ///< by their indices in the meshes
-  double distance = 0;               ///< 0 if the triangles intersect
+  double distance = 0;               ///< 0 if the triangles intersect, and only then
   Eigen::Vector3d fixed_point = {},  ///< on the fixed triangle
       moving_point = {};             ///< on the moving one; a common point if they intersect
   TrianglePart fixed_part = TrianglePart::kFace,  ///< the smallest part that holds the point
       moving_part = TrianglePart::kFace;          ///< likewise
 
   /// Returns the unit vector from the fixed point to the moving one; 0 if the triangles intersect,
-  /// or if the points are the same.
+  /// or if the points are the same. Both points are rounded, so the vector errs by their rounding
+  /// over the distance.
   [[nodiscard]] Eigen::Vector3d direction() const noexcept;
 };
 

@@ -105,6 +105,11 @@ TEST(NearCache, KeepsItsListsWhereABodyMovesSlowly) {
               0.02);
   }
   EXPECT_GT(run.kept, run.ticks - 20);
+  std::vector<NearPair> out(1 << 12);
+  const Eigen::Isometry3d pose = shift({2.003, 0, 0});
+  EXPECT_EQ(run.carried().near_pairs(pose, 0.02, out).found, Found::kKept);
+  run.carried().forget();
+  EXPECT_EQ(run.carried().near_pairs(pose, 0.02, out).found, Found::kFresh);
   EXPECT_GT(run.pairs, run.ticks);
 }
 

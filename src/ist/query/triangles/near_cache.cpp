@@ -22,6 +22,10 @@ constexpr std::uint64_t kLeastSlice = 2'000;
 // A list of fewer pairs could be wider, and one of more should be narrower.
 constexpr std::uint64_t kFewPairs = 96, kManyPairs = 256;
 constexpr double kWidest = 16;
+// Beyond this a float does not hold a reach.
+constexpr double kLargestReach = 0x1p100;
+// Blocks between two looks at the clock.
+constexpr std::size_t kUnwatchedBlocks = 256;
 // Ticks without a list after one that had no room.
 constexpr std::uint64_t kPause = 64;
 // The tests that take as long as a pair of the list.
@@ -119,12 +123,13 @@ bool NearCache::find(const Need& need) noexcept {
 
 bool NearCache::answer(NearDecision& decision, std::uint64_t& measured) noexcept {
   const List& list = kept();
-  // A pair is no nearer than this less than at the centre.
+  // The distance of a pair is less than at the centre by no more than this.
   const double nearer = motion_ + 4 * error_;
   for (std::size_t k = 0; k < list.used; ++k) {
     const Block& block = list.blocks[k];
-    if (block.least - nearer > decision.enough()) continue;
-    if (decision.context().budget.is_past()) return false;
+    const bool far = block.least - nearer > decision.enough();
+    if ((!far || k % kUnwatchedBlocks == 0) && decision.context().budget.is_past()) return false;
+    if (far) continue;
     std::uint32_t apart = 0;
     for (std::size_t lane = 0; lane < block.count; ++lane) {
       if (block.distance[lane] > nearer) apart |= std::uint32_t{1} << lane;
@@ -140,6 +145,7 @@ bool NearCache::want(const Need& need, std::uint64_t tests) noexcept {
   if (tests > 0 && list_tests_ == 0) list_tests_ = 2 * tests;
   pause_ -= pause_ > 0 ? 1 : 0;
   const double slack = width_ * std::max(kWantedTicks / 2 * speed_, need.enough / 8);
+  if (!(need.enough + slack < kLargestReach)) return false;
   const double ticks = speed_ > 0 ? 2 * slack / speed_ : HUGE_VAL;
   const bool holds_now = kept().state == State::kKept;
   const double spare = holds_now ? kept().reach - need.enough - way(kept().centre, poses_[0]) : 0;
@@ -167,7 +173,7 @@ bool NearCache::want(const Need& need, std::uint64_t tests) noexcept {
   return true;
 }
 
-void NearCache::advance(FoundMemory& memory) noexcept {
+void NearCache::advance(const Budget& budget, FoundMemory& memory) noexcept {
   List& list = next();
   if (list.state != State::kFilling) return;
   memory.clear();
@@ -183,7 +189,7 @@ void NearCache::advance(FoundMemory& memory) noexcept {
   };
   const auto work = [&] { return walk_.tests() + kPairTests * list.pairs; };
   const std::uint64_t end = work() + slice_;
-  while (!walk_.is_whole() && work() < end) {
+  while (!walk_.is_whole() && work() < end && !budget.is_past()) {
     if (!walk_.advance(visit)) return;
   }
   if (!walk_.is_whole()) return;
@@ -215,9 +221,11 @@ bool NearCache::take(FoundTriangles& found) noexcept {
 // Returns whether there is room.
 bool NearCache::add(TriangleIds ids, double distance) noexcept {
   List& list = next();
-  const double part = (distance - list.enough) / (list.reach - list.enough);
-  const auto of_class = static_cast<std::size_t>(
-      std::clamp(part * static_cast<double>(kClasses), 0.0, static_cast<double>(kClasses - 1)));
+  const double part =
+      (distance - list.enough) / (list.reach - list.enough) * static_cast<double>(kClasses);
+  const std::size_t of_class = !(part > 0)       ? 0
+                               : part < kClasses ? static_cast<std::size_t>(part)
+                                                 : kClasses - 1;
   std::size_t& open = list.open[of_class];
   if (open == 0) {
     if (list.used == list.blocks.size()) return false;

@@ -24,7 +24,7 @@ namespace ist {
 /// way. The answer is that of a fresh search, bit by bit.
 class NearCache {
  public:
-  /// Reserves all memory: two lists of so many pairs, 168 bytes a pair, and a ClusterWalk.
+  /// Reserves all memory: two lists of so many pairs, 168 bytes each, and a ClusterWalk.
   NearCache(const TriangleMesh& fixed, const TriangleMesh& moving,
             const TriangleClusters& fixed_clusters, const TriangleClusters& moving_clusters,
             const ClusterKernels& kernels, std::size_t pairs);
@@ -44,13 +44,13 @@ class NearCache {
   /// Ends a tick: goes on with the next list. `pose_of(centre)` returns a ClusterPose. `tests`
   /// counts those of this tick's own search, 0 if a list answered.
   template <class PoseOf>
-  void prepare(const Need& need, std::uint64_t tests, FoundMemory& memory,
+  void prepare(const Need& need, std::uint64_t tests, const Budget& budget, FoundMemory& memory,
                PoseOf pose_of) noexcept {
     if (want(need, tests)) {
       const ClusterPose pose = pose_of(rigid(next().centre));
       walk_.begin(pose, rounded_up(next().reach + double{pose.error}));
     }
-    advance(memory);
+    advance(budget, memory);
   }
   void forget() noexcept;
 
@@ -92,7 +92,7 @@ class NearCache {
   [[nodiscard]] RelativePose ahead(double ticks) const noexcept;
   [[nodiscard]] static Eigen::Isometry3d rigid(const RelativePose& pose) noexcept;
   [[nodiscard]] bool want(const Need& need, std::uint64_t tests) noexcept;
-  void advance(FoundMemory& memory) noexcept;
+  void advance(const Budget& budget, FoundMemory& memory) noexcept;
   [[nodiscard]] bool take(FoundTriangles& found) noexcept;
   [[nodiscard]] bool add(TriangleIds ids, double distance) noexcept;
   void set_width() noexcept;

@@ -156,7 +156,8 @@ NearPair closest_points(const TriangleCorners& a, const TriangleCorners& b, Tria
                         std::size_t parts) noexcept {
   const ClosestTriangle first = plain(a), second = plain(b);
   const ClosestSide of_a(first), of_b(second);
-  const NearPair pair = points_of(of_a, of_b, triangles, parts);
+  NearPair pair = points_of(of_a, of_b, triangles, parts);
+  pair.distance = std::max(pair.distance, kLeastDistance);
   if (surely_apart(a, b, pair) || !triangles_meet(a, b)) return pair;
   return common_point(of_a, of_b, triangles);
 }

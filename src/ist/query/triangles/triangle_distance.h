@@ -17,6 +17,9 @@ namespace ist {
 [[nodiscard]] double distance_squared(const TriangleCorners& a, const TriangleCorners& b) noexcept;
 
 inline constexpr double kTriangleDistanceError = 0x1p-24;
+/// The distance of triangles that do not intersect, if their closest points are the same in double:
+/// so that 0 says that they do.
+inline constexpr double kLeastDistance = 0x1p-1022;
 
 /// Returns the square of the distance between the axis-aligned boxes round two triangles, 0 where
 /// they overlap: no more than that of the triangles, but for two roundings.

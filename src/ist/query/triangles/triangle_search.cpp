@@ -102,8 +102,9 @@ class NearestPair {
     const double boxes = box_distance_squared(a, b);
     const double enough = nearest_ + 2 * error();
     if (boxes > enough * enough || surely_farther(a, b, enough)) return;
-    const double distance =
-        boxes == 0 && triangles_meet(a, b) ? 0 : std::sqrt(distance_squared(a, b));
+    const double distance = boxes == 0 && triangles_meet(a, b)
+                                ? 0
+                                : std::max(std::sqrt(distance_squared(a, b)), kLeastDistance);
     if (distance > nearest_ || (distance == nearest_ && ids_ && !(ids < *ids_))) return;
     nearest_ = distance;
     ids_ = ids;
@@ -125,7 +126,17 @@ class NearestPair {
       if (context_.is_late(measured++)) return false;
       measure(found.open[k]);
     }
+    if (count > 0 && nearest_ == 0) find_first(found.open);
     return true;
+  }
+  // Of pairs that meet the first in the order of the search counts: which one is measured first
+  // depends on the kernel.
+  void find_first(const TriangleList& list) noexcept {
+    for (std::size_t k = 0; k < list.count && !(list[k] == *ids_); ++k) {
+      if (!context_.meshes.meet(list[k])) continue;
+      ids_ = list[k];
+      return;
+    }
   }
 
   VisitorContext context_;
@@ -292,13 +303,15 @@ TriangleSearch::End TriangleSearch::pairs(const TrianglePose& pose, const Budget
       shared_ ? shared_->run(search_, meshes, meter, all, list_) : search_.run(meter, all);
   complete = all.finish() && complete;
   list_.finish();
-  if (list_.count() > 0 && !out.empty()) witnesses_.met = {out[0].fixed, out[0].moving};
+  if (list_.count() > 0 && !out.empty()) {
+    witnesses_.met = witnesses_.touching = {out[0].fixed, out[0].moving};
+  }
   return {complete, meter.spent() - kRootTests};
 }
 
 TriangleSearch::Any TriangleSearch::any(const TrianglePose& pose, const Budget& budget) noexcept {
   const Meshes meshes{*fixed_->triangles(), {*moving_->triangles(), pose.rigid}};
-  if (still_meet(meshes, budget)) return {{true, 1}, true};
+  if (still_meet(witnesses_.met, meshes, budget)) return {{true, 1}, true};
   AnyPair any({search_.step(), kernels_, meshes, memory_, budget});
   BudgetMeter meter(budget, kRootTests);
   search_.begin(cluster_pose(pose));
@@ -315,9 +328,9 @@ TriangleSearch::Nearest TriangleSearch::nearest(const TrianglePose& pose, double
     return closest_points(corners_of(meshes.fixed, ids.fixed), meshes.moving[ids.moving],
                           {ids.fixed, ids.moving});
   };
-  if (still_meet(meshes, budget)) {
+  if (still_meet(witnesses_.touching, meshes, budget)) {
     distance = {0, 0};
-    return {{true, 1}, 0, closest(*witnesses_.met)};
+    return {{true, 1}, 0, closest(*witnesses_.touching)};
   }
   search_.begin(cluster_pose(pose));
   NearestPair nearest({search_.step(), kernels_, meshes, memory_, budget}, tolerance, longest_edge_,
@@ -335,7 +348,7 @@ TriangleSearch::Nearest TriangleSearch::nearest(const TrianglePose& pose, double
   bool complete = nearest.distance() == 0 || search_.run(meter, nearest);
   complete = complete || nearest.distance() == 0;
   if (nearest.distance() == 0) {
-    witnesses_.met = nearest.ids();
+    witnesses_.met = witnesses_.touching = nearest.ids();
   } else if (nearest.ids()) {
     witnesses_.nearest = {*nearest.ids(), nearest.distance()};
   }
@@ -370,7 +383,7 @@ TriangleSearch::Near TriangleSearch::near(const TrianglePose& pose, double enoug
     std::uint64_t tests = 0;
     const bool complete = near_->answer(decision, tests);
     list.finish();
-    if (!budget.is_past()) prepare_near(need, 0);
+    if (!budget.is_past()) prepare_near(need, 0, budget);
     return {{complete, tests}, true};
   }
   NearbyPairs near(decision);
@@ -379,18 +392,20 @@ TriangleSearch::Near TriangleSearch::near(const TrianglePose& pose, double enoug
   complete = near.finish() && complete;
   list.finish();
   const std::uint64_t tests = meter.spent() - kRootTests;
-  if (carries && complete && !budget.is_past()) prepare_near(need, tests);
+  if (carries && complete && !budget.is_past()) prepare_near(need, tests, budget);
   return {{complete, tests}, false};
 }
 
-void TriangleSearch::prepare_near(const NearCache::Need& need, std::uint64_t tests) noexcept {
-  near_->prepare(need, tests, memory_,
+void TriangleSearch::prepare_near(const NearCache::Need& need, std::uint64_t tests,
+                                  const Budget& budget) noexcept {
+  near_->prepare(need, tests, budget, memory_,
                  [&](const Eigen::Isometry3d& centre) { return cluster_pose(centre); });
 }
 
 // Returns whether the triangles that met last still do. A limit of tests does not ask.
-bool TriangleSearch::still_meet(const Meshes& meshes, const Budget& budget) const noexcept {
-  return witnesses_.met && !budget.has_tests() && meshes.meet(*witnesses_.met);
+bool TriangleSearch::still_meet(const std::optional<TriangleIds>& witness, const Meshes& meshes,
+                                const Budget& budget) noexcept {
+  return witness && !budget.has_tests() && meshes.meet(*witness);
 }
 
 // Finds a first bound, as far as the budget allows.

@@ -39,7 +39,8 @@ struct Witnesses {
     TriangleIds ids;
     double distance;
   };
-  std::optional<TriangleIds> met;
+  std::optional<TriangleIds> met;       ///< to any question: other ones on other targets
+  std::optional<TriangleIds> touching;  ///< to pairs() or nearest(): the same on every target
   std::optional<Nearest> nearest;
 };
 
@@ -54,8 +55,8 @@ struct TrianglePose {
 /// helps with pairs() alone.
 ///
 /// Keeps witnesses, the triangles that met last and those that were nearest last. They are looked
-/// at first, unless the budget has a limit of tests. An answer to nearest() depends on the nearest
-/// ones alone: they are the same on every target, as those that met need not be.
+/// at first, unless the budget has a limit of tests. An answer to nearest() depends on witnesses
+/// that are the same on every target.
 class TriangleSearch {
  public:
   /// Reserves all memory. Both trees must have triangles. Refers to both.
@@ -135,8 +136,10 @@ class TriangleSearch {
   }
   [[nodiscard]] ClusterPose cluster_pose(const TrianglePose& pose) const noexcept;
   [[nodiscard]] ClusterPose cluster_pose(const Eigen::Isometry3d& rigid) const noexcept;
-  [[nodiscard]] bool still_meet(const Meshes& meshes, const Budget& budget) const noexcept;
-  void prepare_near(const NearCache::Need& need, std::uint64_t tests) noexcept;
+  [[nodiscard]] static bool still_meet(const std::optional<TriangleIds>& witness,
+                                       const Meshes& meshes, const Budget& budget) noexcept;
+  void prepare_near(const NearCache::Need& need, std::uint64_t tests,
+                    const Budget& budget) noexcept;
   template <class Visitor>
   void begin_nearest(BudgetMeter& meter, Visitor& nearest) noexcept;
 

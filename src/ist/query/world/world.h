@@ -48,7 +48,8 @@ inline constexpr std::size_t kAllPairs = std::numeric_limits<std::size_t>::max()
 
 /// The options of a World.
 struct WorldOptions {
-  QueryOptions query = {};        ///< of the query of each pair; with one worker
+  /// Of the query of each pair; with one worker. `near_pairs` has no effect.
+  QueryOptions query = {};
   ManifoldOptions manifold = {};  ///< of the manifold of each pair
   /// A pair is near if the distance of its root bounds is at most this, mesh units: at least 0 and
   /// finite.
@@ -139,7 +140,8 @@ struct WorldDistance {
   /// Holds the least distance, mesh units. Both ends are the largest double if no pair counts;
   /// [0, infinity] without an answer.
   DistanceInterval distance{0, std::numeric_limits<double>::infinity()};
-  /// The pair with the least upper end. Its WorldPair in `pairs` has the nearest points.
+  /// The pair with the least upper end. Its WorldPair in `pairs` has the nearest points, if the
+  /// tolerance asked for them.
   std::optional<BodyPair> nearest = std::nullopt;
   std::uint64_t sphere_tests = 0;  ///< of all pairs, as Budget::tests counts them
   /// The pairs that may be nearest by their roots, in the order of BodyPair, until the next call;
@@ -153,7 +155,7 @@ struct WorldDistance {
 ///
 /// A Query of the two bodies of a pair at pose_of(a, b) gives the same answer, bit by bit. The list
 /// of near pairs and its order depend on the poses alone, and on no earlier ones. A pair keeps the
-/// triangles that met or were nearest last as long as every question asks it.
+/// triangles that met or were nearest last as long as every question but kNear asks it.
 ///
 /// All pairs share one query a thread. A pair takes memory while it is near.
 ///

@@ -176,6 +176,7 @@ WorldAnswer World::ask(const WorldQuestion& question, const Budget& budget) noex
       .complete = !truncated, .truncated = truncated, .near_pairs = near.count(), .pairs = pairs};
   if (question.kind == WorldQuestion::kNear || pairs.empty()) {
     all.sphere_tests = pairs.size();
+    if (question.kind != WorldQuestion::kNear) reserved.memories.clear();
     return all;
   }
 
