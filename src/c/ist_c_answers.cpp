@@ -92,7 +92,7 @@ ist_status ist_query_contacts(ist_query* query, const double pose[16], const ist
     if (const ist_status wrong = read_budget(call, budget, allowed)) return wrong;
     const Held<QueryObject> held(call, "query", query);
     if (held.status() != IST_OK) return held.status();
-    if (!held->manifold) return not_prepared(call);
+    if (const ist_status wrong = need_contacts(call, *held)) return wrong;
     const ist::QueryResult found =
         held->query.contacts(to_isometry(pose), *held->manifold, allowed);
     if (const ist_status wrong = status_of(call, found.status, pose)) return wrong;

@@ -90,7 +90,9 @@ ist_status ist_query_rows(ist_query* query, const double* poses, size_t count,
     if (const ist_status wrong = read_rows_options(call, *options, asked)) return wrong;
     const Held<QueryObject> held(call, "query", query);
     if (held.status() != IST_OK) return held.status();
-    if (asked.questions.contacts && !held->manifold) return not_prepared(call);
+    if (asked.questions.contacts) {
+      if (const ist_status wrong = need_contacts(call, *held)) return wrong;
+    }
     std::vector<Eigen::Isometry3d> at(count);
     for (std::size_t i = 0; i < count; ++i) at[i] = to_isometry(poses + 16 * i);
     ist::QueryOptions further = held->query_options;

@@ -52,7 +52,9 @@ ist_status read_budget(const Call& call, const ist_budget* given, Budget& budget
   return IST_OK;
 }
 
-ist_status not_prepared(const Call& call) {
+ist_status need_contacts(const Call& call, const QueryObject& query) {
+  if (!query.has_voxels()) return status_of(call, QueryStatus::kNoVoxels);
+  if (query.manifold) return IST_OK;
   return call.fail(IST_NOT_PREPARED,
                    "the query was created without contacts: create it with a number of them");
 }
@@ -68,6 +70,10 @@ ist_status status_of(const Call& call, QueryStatus status, const double* pose) {
     case QueryStatus::kNoTriangles:
       return call.fail(IST_TRIANGLES_MISSING,
                        "a tree has no triangles: build both trees with them");
+    case QueryStatus::kNoVoxels:
+      return call.fail(IST_VOXELS_MISSING,
+                       "a tree has no voxels, which leaf pairs and contacts need: build both trees "
+                       "with a voxel_size");
     case QueryStatus::kManifoldMismatch:  // each manifold belongs to its query
     case QueryStatus::kBusy:              // a handle is used by one thread at a time
     case QueryStatus::kNotPrepared:       // of a world

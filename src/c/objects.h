@@ -40,14 +40,18 @@ struct QueryObject {
   static constexpr HandleUse kUse = HandleUse::kAlone;
   static constexpr const char* kName = "query";
 
-  /// @param manifold_options empty: the query gives no contacts
+  /// @param manifold_options empty: the query gives no contacts, as without voxels
   QueryObject(const SphereTree& fixed, const SphereTree& moving, const QueryOptions& options,
               const std::optional<ManifoldOptions>& manifold_options)
       : query(fixed, moving, options), query_options(options) {
-    if (!manifold_options) return;
+    if (!manifold_options || !has_voxels()) return;
     contact_options = *manifold_options;
     max_contacts = manifold_options->points;
     manifold.emplace(fixed, moving, query.policy(), *manifold_options);
+  }
+
+  [[nodiscard]] bool has_voxels() const noexcept {
+    return query.fixed().has_voxels() && query.moving().has_voxels();
   }
 
   Query query;
@@ -60,6 +64,10 @@ struct QueryObject {
 /// Converts a policy to its IST_SPHERES_...
 [[nodiscard]] constexpr std::int32_t spheres_of(SpherePolicy policy) noexcept {
   return static_cast<std::int32_t>(policy) + IST_SPHERES_SIMPLE;
+}
+/// Converts the policy of a tree or a query; IST_SPHERES_DEFAULT if it has no voxels.
+[[nodiscard]] constexpr std::int32_t spheres_of(SpherePolicy policy, bool has_voxels) noexcept {
+  return has_voxels ? spheres_of(policy) : IST_SPHERES_DEFAULT;
 }
 static_assert(spheres_of(SpherePolicy::kSimple) == IST_SPHERES_SIMPLE &&
               spheres_of(SpherePolicy::kTable) == IST_SPHERES_TABLE &&
@@ -100,8 +108,8 @@ struct CQueryOptions {
 [[nodiscard]] ist_status read_query_options(const Call& call, const ist_query_options& given,
                                             CQueryOptions& options);
 
-/// Stores the message of a query that was created without contacts.
-ist_status not_prepared(const Call& call);
+/// Returns IST_OK if a query gives contacts; else stores the message of an error.
+[[nodiscard]] ist_status need_contacts(const Call& call, const QueryObject& query);
 
 /// Converts a query's status; stores the message of an error.
 /// @param pose the pose that was asked about, or NULL

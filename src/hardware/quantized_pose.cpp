@@ -184,7 +184,7 @@ std::array<std::int32_t, 3> move_centre(const QuantizedPose& pose,
 
 QuantizedPose quantize_pose(const Eigen::Isometry3d& pose, const SphereTree& fixed,
                             const SphereTree& moving) {
-  return quantize_pose(pose, parts_of(fixed).lattice, parts_of(moving).lattice);
+  return quantize_pose(pose, voxels_of(fixed).lattice, voxels_of(moving).lattice);
 }
 
 }  // namespace ist

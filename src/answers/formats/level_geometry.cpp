@@ -63,8 +63,8 @@ std::vector<std::uint64_t> open_faces(std::span<const std::uint64_t> cells, std:
 }  // namespace
 
 PolyData level_cubes(const SphereTree& tree, int level) {
-  const Lattice& lattice = parts_of(tree).lattice;
-  const std::vector<std::uint64_t> cells = parts_of(tree).octree.codes(level);
+  const Lattice& lattice = voxels_of(tree).lattice;
+  const std::vector<std::uint64_t> cells = voxels_of(tree).octree.codes(level);
   const std::vector<std::uint64_t> faces = open_faces(cells, 1u << (tree.depth() - level));
   std::vector<std::uint64_t> corners = faces;
   std::sort(corners.begin(), corners.end());

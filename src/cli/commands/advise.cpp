@@ -88,11 +88,10 @@ double coarsest_for(const TriangleMesh& fixed, const TriangleMesh& moving,
                   smaller.string()));
 }
 
-// Builds a tree of one voxel for exact queries, which do without voxels.
+// Builds a tree without voxels for exact queries.
 SphereTree load_exact(const std::filesystem::path& file, CheckedMesh checked,
                       std::uint64_t max_memory) {
   BuildOptions build;
-  build.voxel_size = extent_of(checked.mesh);
   build.max_memory = max_memory;
   SphereTree tree =
       build_with_progress(file.string(), std::move(checked.mesh), build, checked.warnings);

@@ -86,10 +86,11 @@ void run(const ExportArguments& options) {
             "goes with a .glb, which is in metres; .vtp and .ply keep the mesh's unit");
   refuse_to_overwrite(options.output, {options.tree});
   const SphereTree tree = read_tree(options.tree);
+  require_voxels(tree, options.tree.string());
   refuse_if(options.level > tree.depth(), "--level",
             fmt::format("the tree has levels 0 to {}", tree.depth()));
   (options.what == "voxels" ? write_voxels : write_spheres)(tree, format, options);
-  const std::uint32_t count = parts_of(tree).octree.node_count(options.level);
+  const std::uint32_t count = voxels_of(tree).octree.node_count(options.level);
   if (options.json) {
     print_header("export", {{"tree", options.tree}});
     const nlohmann::ordered_json line{{"file", options.output.filename().string()},

@@ -105,17 +105,22 @@ void print_mesh(const std::filesystem::path& file, const MeshReport& report,
 void print_tree(const std::filesystem::path& file, const SphereTree& tree,
                 const std::optional<MeshReport>& triangles,
                 const std::vector<LevelStatistics>& levels) {
-  fmt::print("{}: a tree of {} voxels of edge {}, {} nodes, {:.1f} MB in memory\n", file.string(),
-             tree.leaf_count(), tree.voxel_size(), parts_of(tree).octree.node_count(),
+  const std::string of = tree.has_voxels()
+                             ? fmt::format("{} voxels of edge {}, {} nodes", tree.leaf_count(),
+                                           tree.voxel_size(), voxels_of(tree).octree.node_count())
+                             : "triangles without voxels";
+  fmt::print("{}: a tree of {}, {:.1f} MB in memory\n", file.string(), of,
              static_cast<double>(tree.bytes()) / 1e6);
   print_source(tree.source());
   print_extent(box_of(tree), tree.source().unit);
   print_frame(tree.frame());
   if (triangles) print_topology(*triangles, tree.source().unit);
-  fmt::print("orientation {}, {} triangles kept, {} proximity voxels\n\n",
+  fmt::print("orientation {}, {} triangles kept",
              tree.orientation() == Orientation::kOutward ? "outward" : "assumed",
-             triangles ? triangles->triangles : 0,
-             parts_of(tree).proximity ? parts_of(tree).proximity->octree.leaf_count() : 0);
+             triangles ? triangles->triangles : 0);
+  if (!tree.has_voxels()) return fmt::print("\n");
+  fmt::print(", {} proximity voxels\n\n",
+             tree.has_proximity() ? voxels_of(tree).proximity->octree.leaf_count() : 0);
   print_levels(tree, levels);
 }
 

@@ -18,21 +18,54 @@ namespace {
 // A stream is given at most this number of leaf pairs at once.
 constexpr std::size_t kWindow = 1 << 12;
 
-// Returns the fixed tree of two that can be compared.
-const SphereTree& comparable(const SphereTree& fixed, const SphereTree& moving) {
+// Returns the fixed tree of two that can be compared, and that answer a question together.
+const SphereTree& comparable(const SphereTree& fixed, const SphereTree& moving,
+                             const QueryOptions& options) {
   const std::string reason = contradiction(fixed, "the fixed tree", moving, "the moving tree");
-  if (reason.empty()) return fixed;
-  throw Error(ErrorCode::kArgumentInvalid, "query: " + reason);
+  if (!reason.empty()) throw Error(ErrorCode::kArgumentInvalid, "query: " + reason);
+  if (options.policy) {
+    fixed.require(*options.policy, "fixed");
+    moving.require(*options.policy, "moving");
+  }
+  const auto refuse_half = [](const SphereTree& a, const char* name, const SphereTree& b,
+                              const char* other) {
+    if (a.has_voxels() || b.triangles() != nullptr) return;
+    throw Error(ErrorCode::kVoxelsMissing,
+                fmt::format("query: the {} tree has no voxels, and the {} tree no triangles: build "
+                            "the first with a voxel size, or the second with keep_triangles",
+                            name, other));
+  };
+  refuse_half(fixed, "fixed", moving, "moving");
+  refuse_half(moving, "moving", fixed, "fixed");
+  return fixed;
+}
+
+// Makes the plan of two trees with voxels.
+std::optional<SearchPlan>& make_plan(std::optional<SearchPlan>& plan, const SphereTree& fixed,
+                                     const SphereTree& moving, SpherePolicy policy) {
+  if (fixed.has_voxels() && moving.has_voxels()) plan.emplace(fixed, moving, policy);
+  return plan;
 }
 
 CacheOptions coherent_options(const QueryOptions& options) {
   return {options.frontier_pairs, options.front_pairs, options.workers, options.period};
 }
 
+// Returns the bytes that a query reserves for the leaves of such a plan.
+std::size_t bytes_of_leaves(const SearchPlan& plan, const QueryOptions& options) {
+  std::size_t bytes = (options.workers == 2 ? SharedSearch::bytes_for(plan, options.frontier_pairs)
+                                            : Search::bytes_for(plan, options.frontier_pairs)) +
+                      (kWindow + kLeafPairSpare) * sizeof(LeafPair);
+  if (options.front_pairs > 0) {
+    bytes += CachedSearch::bytes_for(plan, coherent_options(options));
+  }
+  return bytes;
+}
+
 // Returns the bytes that a query with such a plan reserves. Throws kArgumentInvalid for an option
 // out of range.
-std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const SphereTree& moving,
-                       const QueryOptions& options) {
+std::size_t bytes_with(const std::optional<SearchPlan>& plan, const SphereTree& fixed,
+                       const SphereTree& moving, const QueryOptions& options) {
   if (options.workers != 1 && options.workers != 2) {
     throw Error(ErrorCode::kArgumentInvalid,
                 fmt::format("query option workers is {}: give 1 or 2", options.workers));
@@ -42,12 +75,7 @@ std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const Sp
                 fmt::format("query option front_pairs is {}: {} is the most", options.front_pairs,
                             kMostItems));
   }
-  std::size_t bytes = (options.workers == 2 ? SharedSearch::bytes_for(plan, options.frontier_pairs)
-                                            : Search::bytes_for(plan, options.frontier_pairs)) +
-                      (kWindow + kLeafPairSpare) * sizeof(LeafPair);
-  if (options.front_pairs > 0) {
-    bytes += CachedSearch::bytes_for(plan, coherent_options(options));
-  }
+  std::size_t bytes = plan ? bytes_of_leaves(*plan, options) : 0;
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
     bytes += TriangleSearch::bytes_for(fixed, moving, options.workers);
   }
@@ -74,29 +102,34 @@ DistanceInterval narrowed(const Approach& bodies, const DistanceBounds& bounds, 
 
 QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tree,
                        const QueryOptions& options, const ScopedFloatEnvironment&)
-    : fixed(comparable(fixed_tree, moving_tree)),
+    : fixed(comparable(fixed_tree, moving_tree, options)),
       moving(moving_tree),
       policy(policy_of(fixed, moving, options)),
       kernels(select_kernels(options.target)),
-      plan(fixed, moving, policy),
-      bytes(bytes_with(plan, fixed, moving, options)) {
-  if (options.workers == 2) {
-    searches.emplace<SharedSearch>(plan, kernels, options.frontier_pairs, options.period);
-  } else {
-    searches.emplace<Search>(plan, kernels, options.frontier_pairs);
-  }
-  if (options.front_pairs > 0) {
-    cached.emplace(fixed, moving, policy, plan, kernels, coherent_options(options));
-  }
-  window.resize(kWindow + kLeafPairSpare);
+      workers(options.workers),
+      bytes(bytes_with(make_plan(plan, fixed, moving, policy), fixed, moving, options)) {
+  if (plan) reserve_leaves(options);
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
     triangles.emplace(fixed, moving, kernels, WorkerOptions{options.workers, options.period});
   }
 }
 
+void QueryState::reserve_leaves(const QueryOptions& options) {
+  if (options.workers == 2) {
+    searches.emplace<SharedSearch>(*plan, kernels, options.frontier_pairs, options.period);
+  } else {
+    searches.emplace<Search>(*plan, kernels, options.frontier_pairs);
+  }
+  if (options.front_pairs > 0) {
+    cached.emplace(fixed, moving, policy, *plan, kernels, coherent_options(options));
+  }
+  window.resize(kWindow + kLeafPairSpare);
+}
+
 std::size_t QueryState::bytes_for(const SphereTree& fixed, const SphereTree& moving,
                                   const QueryOptions& options) {
-  const SearchPlan plan(fixed, moving, policy_of(fixed, moving, options));
+  std::optional<SearchPlan> plan;
+  make_plan(plan, comparable(fixed, moving, options), moving, policy_of(fixed, moving, options));
   return bytes_with(plan, fixed, moving, options);
 }
 
@@ -108,7 +141,7 @@ double QueryState::triangle_error(const Eigen::Isometry3d& pose) const noexcept 
 
 std::optional<Approach> QueryState::approach(const Eigen::Isometry3d& pose,
                                              double margin) const noexcept {
-  const auto relative = relative_pose(pose, parts_of(fixed).lattice, parts_of(moving).lattice);
+  const auto relative = relative_pose(pose, parts_of(fixed).origin, parts_of(moving).origin);
   if (!relative) return std::nullopt;
   return Approach{*relative, test_roots(fixed, moving, policy, *relative, margin), margin};
 }
@@ -173,7 +206,7 @@ DistanceInterval QueryState::search(const Approach& bodies, const SearchPose& po
   result.sphere_tests += end.tests - meter.spent() + found.tests;
   result.leaf_pairs = end.leaf_pairs;
   result.truncated = sink.truncated();
-  result.level = static_cast<int>(plan.steps().size() - end.steps);
+  result.level = static_cast<int>(plan->steps().size() - end.steps);
   result.complete = result.level == 0;
   if (keeps && result.complete) {
     cached->prepare(bodies.relative, bodies.margin, result.leaf_pairs, end.tests, budget);
@@ -203,7 +236,7 @@ DistanceInterval QueryState::answer_from(const CachedSearch::CacheAt& found, con
   result.complete = cached->pass_on(cache, pose, budget, sink);
   if (!result.complete) {
     if (!sink.stopped()) sink.clear();  // the pairs that were passed on are not repeatable
-    result.level = static_cast<int>(plan.steps().size());
+    result.level = static_cast<int>(plan->steps().size());
   }
   result.leaf_pairs = sink.count();
   result.truncated = sink.truncated();

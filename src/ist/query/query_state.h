@@ -41,12 +41,14 @@ struct QueryState {
   [[nodiscard]] IST_LOOP_API static std::size_t bytes_for(const SphereTree& fixed,
                                                           const SphereTree& moving,
                                                           const QueryOptions& options);
-  /// Returns the policy of a query of two trees.
+  /// Returns the policy of a query of two trees; kSimple if one of them has no voxels.
   [[nodiscard]] static SpherePolicy policy_of(const SphereTree& fixed, const SphereTree& moving,
                                               const QueryOptions& options) noexcept {
     return options.policy.value_or(std::min(fixed.tightest(), moving.tightest()));
   }
 
+  /// Reserves the memory for questions of leaves. Precondition: has_leaves().
+  void reserve_leaves(const QueryOptions& options);
   /// Composes the relative pose and tests the roots. Returns nothing if `pose` is no rigid motion.
   [[nodiscard]] std::optional<Approach> approach(const Eigen::Isometry3d& pose,
                                                  double margin = 0) const noexcept;
@@ -56,6 +58,8 @@ struct QueryState {
   [[nodiscard]] SearchPose to_float(const Approach& approach, double margin = 0) const noexcept;
   /// Returns the pad of leaves that a leaf pair may need, mesh units.
   [[nodiscard]] double pad_of(const SearchPose& pose) const noexcept;
+  /// Returns whether both trees have voxels. The steps of leaves need them.
+  [[nodiscard]] bool has_leaves() const noexcept { return plan.has_value(); }
   /// Returns the search of the calling thread alone.
   [[nodiscard]] Search& serial() noexcept;
   /// Passes the leaf pairs of two bodies whose roots overlap to a Lister's sink: from a cache, or
@@ -92,7 +96,8 @@ struct QueryState {
   const SphereTree fixed, moving;  // which share the content
   SpherePolicy policy;
   const Kernels& kernels;
-  SearchPlan plan;
+  int workers;
+  std::optional<SearchPlan> plan;  // only with voxels, as all that leaves need
   std::size_t bytes;
   std::variant<std::monostate, Search, SharedSearch> searches;  // made after the plan it refers to
   std::optional<CachedSearch> cached;

@@ -72,6 +72,7 @@ enum class QueryStatus : std::uint8_t {
   kBusy,              ///< another thread is using the query; nothing was searched or changed
   kNotPrepared,       ///< of a World: nothing was reserved for this question before
   kNoSuchBody,        ///< of a World: no body has this number
+  kNoVoxels,          ///< the question needs voxels, and a tree was built without them
 };
 /// Returns the status' name, such as "invalid-pose", for logs and tests.
 [[nodiscard]] IST_API const char* to_string(QueryStatus status) noexcept;

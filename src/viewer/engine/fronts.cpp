@@ -80,7 +80,7 @@ std::vector<StepFront> record_fronts(const SphereTree& fixed, const SphereTree& 
                                      SearchLevels last) {
   const ScopedFloatEnvironment environment;
   const SearchPlan plan(fixed, moving, policy, last);
-  const auto relative = relative_pose(pose, parts_of(fixed).lattice, parts_of(moving).lattice);
+  const auto relative = relative_pose(pose, parts_of(fixed).origin, parts_of(moving).origin);
   if (!relative) {
     throw Error(ErrorCode::kPoseInvalid,
                 fmt::format("pose: it is no rigid motion: {}", why_not_rigid(pose)));

@@ -24,7 +24,7 @@ class Figure(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.recipe = recipe("distance_map.py")
-        cls.ball, cls.block = map(cls.recipe.tree_of, (ball(9.5), block()))
+        cls.ball, cls.block = map(ist.build, (ball(9.5), block()))
         # The block, turned by a quarter, is 0.25 lower: its top is at 4.75 of the ball's coordinates, 0.25 above the pole.
         cls.figure = cls.recipe.draw(cls.ball, cls.block, motion((0, 0, 1), 90, (0, 0, -0.25)), reach=2.0)
         cls.upper, cls.lower, cls.bar = cls.figure.axes

@@ -24,8 +24,9 @@ namespace ist::test {
 
 /// The same tree without its triangles: as it would have been built.
 [[nodiscard]] inline SphereTree without_triangles(const SphereTree& tree) {
-  return tree_from({parts_of(tree).lattice, parts_of(tree).octree, tree.orientation(),
-                    parts_of(tree).normals, parts_of(tree).bounds, std::nullopt, std::nullopt});
+  const TreeVoxels& voxels = voxels_of(tree);
+  return tree_from({TreeVoxels{voxels.lattice, voxels.octree, voxels.normals, voxels.bounds},
+                    std::nullopt, tree.orientation()});
 }
 
 }  // namespace ist::test

@@ -121,6 +121,7 @@ void require_in_range(const char* name, double value, double most) {
 }
 
 const SphereTree& with(const SphereTree& tree, SpherePolicy policy, const char* body) {
+  require_voxels(tree, body);
   tree.require(policy, body);
   return tree;
 }
@@ -149,7 +150,7 @@ ContactReducer::ContactReducer(const SphereTree& fixed, const SphereTree& moving
       points_(options.points) {
   adder_->rule = contact_rule(scale_, rates_.lever);
   if (options.points > 0) {
-    leaf_sums_.emplace(parts_of(fixed_).octree, std::max<std::size_t>(options.max_leaves, 1));
+    leaf_sums_.emplace(voxels_of(fixed_).octree, std::max<std::size_t>(options.max_leaves, 1));
     adder_->stream = &*leaf_sums_;
   }
   sums_.about = fixed_.origin();
@@ -193,9 +194,11 @@ void ContactReducer::finish(const RelativePose& pose, bool complete) noexcept {
 std::size_t ContactReducer::bytes_for(const SphereTree& fixed, const SphereTree& moving,
                                       const ManifoldOptions& options) {
   static_cast<void>(scale_of(fixed, moving, options));  // checks them
+  require_voxels(fixed, "fixed");
   if (options.points == 0) return sizeof(ContactAdder);
   return sizeof(ContactAdder) +
-         LeafSums::bytes_for(parts_of(fixed).octree, std::max<std::size_t>(options.max_leaves, 1)) +
+         LeafSums::bytes_for(voxels_of(fixed).octree,
+                             std::max<std::size_t>(options.max_leaves, 1)) +
          options.points * sizeof(Contact);
 }
 

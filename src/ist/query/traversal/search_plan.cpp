@@ -18,7 +18,7 @@ constexpr std::uint32_t kMostParents = 1U << 29;
 constexpr std::uint8_t kRootMask = 1;  // the root's parent has one child
 
 void require_addresses(const SphereTree& tree, const char* body) {
-  if (tree.depth() == 0 || parts_of(tree).octree.node_count(1) < kMostParents) return;
+  if (tree.depth() == 0 || voxels_of(tree).octree.node_count(1) < kMostParents) return;
   throw Error(ErrorCode::kMemoryLimit,
               fmt::format("{}: a tree of {} leaves is too large to be searched: use larger voxels",
                           body, tree.leaf_count()));
@@ -30,7 +30,7 @@ float least_float(double value) {
   return nearest < value ? std::nextafter(nearest, HUGE_VALF) : nearest;
 }
 
-ImplicitLevel implicit_level(const TreeParts& tree, SpherePolicy policy, int level) {
+ImplicitLevel implicit_level(const TreeVoxels& tree, SpherePolicy policy, int level) {
   const double half = 0.5 * tree.lattice.edge(level);
   ImplicitLevel made{};
   for (int code = 0; code < 8; ++code) {
@@ -45,8 +45,12 @@ ImplicitLevel implicit_level(const TreeParts& tree, SpherePolicy policy, int lev
   return made;
 }
 
-// Makes all levels of a tree, the leaves first; none where the policy has blocks.
-std::vector<ImplicitLevel> implicit_levels(const TreeParts& tree, SpherePolicy policy) {
+// Makes all levels of a tree, the leaves first; none where the policy has blocks. Throws
+// kPolicyMissing, naming `body`.
+std::vector<ImplicitLevel> implicit_levels(const SphereTree& of, SpherePolicy policy,
+                                           const char* body) {
+  of.require(policy, body);
+  const TreeVoxels& tree = voxels_of(of);
   std::vector<ImplicitLevel> levels;
   for (int level = 0; is_implicit(policy) && level <= tree.lattice.depth; ++level) {
     levels.push_back(implicit_level(tree, policy, level));
@@ -57,9 +61,9 @@ std::vector<ImplicitLevel> implicit_levels(const TreeParts& tree, SpherePolicy p
 // Makes the view of the children at `level` that a step reads.
 SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level,
                          const std::vector<ImplicitLevel>& levels) {
-  const LinearOctree& octree = parts_of(tree).octree;
+  const LinearOctree& octree = voxels_of(tree).octree;
   const bool is_root = level == tree.depth();
-  const double edge = parts_of(tree).lattice.edge(level);
+  const double edge = voxels_of(tree).lattice.edge(level);
   SearchSide side{};
   side.nodes = octree.nodes(level + 1).data();
   side.masks = is_root ? &kRootMask : octree.masks(level + 1).data();
@@ -69,10 +73,10 @@ SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level,
     side.octant_offset = is_root ? 0 : static_cast<float>(0.5 * edge);
     return side;
   }
-  side.balls = parts_of(tree).balls(level).data();
+  side.balls = voxels_of(tree).balls(level).data();
   side.ball_unit = static_cast<float>(2 * edge * PackedBall::kUnit);
   if (policy == SpherePolicy::kSlab) {
-    side.slabs = parts_of(tree).slabs(level).data();
+    side.slabs = voxels_of(tree).slabs(level).data();
     side.slab_unit = static_cast<float>(edge * PackedSlab::kUnit * kSlabScale);
   }
   return side;
@@ -82,21 +86,19 @@ SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level,
 
 SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                        SearchLevels last)
-    : fixed_implicit_(implicit_levels(parts_of(fixed), policy)),
-      moving_implicit_(implicit_levels(parts_of(moving), policy)) {
-  fixed.require(policy, "fixed");
-  moving.require(policy, "moving");
+    : fixed_implicit_(implicit_levels(fixed, policy, "fixed")),
+      moving_implicit_(implicit_levels(moving, policy, "moving")) {
   require_addresses(fixed, "fixed");
   require_addresses(moving, "moving");
   int a = fixed.depth(), b = moving.depth();
   while (a > last.fixed || b > last.moving || steps_.empty()) {  // two leaves alone take a step
-    const double edge_a = parts_of(fixed).lattice.edge(a),
-                 edge_b = parts_of(moving).lattice.edge(b);
+    const double edge_a = voxels_of(fixed).lattice.edge(a),
+                 edge_b = voxels_of(moving).lattice.edge(b);
     const int left_a = a - last.fixed, left_b = b - last.moving;
     const bool open_a = descends(left_a, edge_a, left_b, edge_b),
                open_b = descends(left_b, edge_b, left_a, edge_a);
     const std::size_t before =
-        std::size_t{parts_of(fixed).octree.node_count(a)} * parts_of(moving).octree.node_count(b);
+        std::size_t{voxels_of(fixed).octree.node_count(a)} * voxels_of(moving).octree.node_count(b);
     a -= open_a ? 1 : 0;
     b -= open_b ? 1 : 0;
     SearchStep step{read_children(fixed, policy, a, fixed_implicit_),
@@ -104,18 +106,18 @@ SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, Sphere
                     false,
                     a == 0 && b == 0,
                     0,
-                    parts_of(fixed).normals.data(),
-                    parts_of(moving).normals.data()};
+                    voxels_of(fixed).normals.data(),
+                    voxels_of(moving).normals.data()};
     step.fixed.descends = open_a;
     step.moving.descends = open_b;
     step.fixed.emits_slots = a == last.fixed && b > last.moving;
     step.moving.emits_slots = b == last.moving && a > last.fixed;
     step.last = a <= last.fixed && b <= last.moving;
     step.radius_limit = static_cast<float>(
-        2 * (parts_of(fixed).lattice.edge(a) + parts_of(moving).lattice.edge(b)));
+        2 * (voxels_of(fixed).lattice.edge(a) + voxels_of(moving).lattice.edge(b)));
     steps_.push_back(step);
     sizes_.push_back(
-        {parts_of(moving).octree.node_count(b), before * (open_a ? 8 : 1) * (open_b ? 8 : 1)});
+        {voxels_of(moving).octree.node_count(b), before * (open_a ? 8 : 1) * (open_b ? 8 : 1)});
   }
   IST_ASSERT(steps_.size() <= kMostSteps);
   if (!steps_.back().fixed.descends) fixed_leaves_ = steps_.back().fixed.nodes;

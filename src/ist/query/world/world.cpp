@@ -154,7 +154,8 @@ std::string_view World::name(BodyIndex body) const noexcept {
 std::uint64_t World::bytes() const noexcept {
   std::uint64_t sum = detail::WorldState::Answers::bytes_for(state_->answers.room);
   for (const auto& memory : state_->made) {
-    if (memory) sum += memory->query.bytes() + memory->manifold.bytes();
+    if (!memory) continue;
+    sum += memory->query.bytes() + (memory->manifold ? memory->manifold->bytes() : 0);
   }
   return sum;
 }

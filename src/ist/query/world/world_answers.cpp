@@ -49,7 +49,7 @@ void take_distance(const DistanceResult& result, WorldPair& pair) noexcept {
 }
 
 // Asks the query of a pair. The span of the question is free from `pair.first` on.
-void ask_query(const WorldQuestion& question, Query& query, ContactManifold& manifold,
+void ask_query(const WorldQuestion& question, Query& query, ContactManifold* manifold,
                const Eigen::Isometry3d& pose, const Budget& budget, WorldPair& pair) noexcept {
   switch (question.kind) {
     case WorldQuestion::kNear:
@@ -62,8 +62,13 @@ void ask_query(const WorldQuestion& question, Query& query, ContactManifold& man
       break;
     }
     case WorldQuestion::kContacts:
-      take_leaf_pairs(query.contacts(pose, manifold, budget), pair);
-      pair.manifold = &manifold;
+      if (manifold == nullptr) {  // a body has no voxels
+        pair.status = QueryStatus::kNoVoxels;
+        pair.complete = false;
+        break;
+      }
+      take_leaf_pairs(query.contacts(pose, *manifold, budget), pair);
+      pair.manifold = manifold;
       break;
     case WorldQuestion::kLeafPairs: {
       const std::span<LeafPair> out = question.leaf_pairs.subspan(pair.first);
@@ -129,8 +134,8 @@ WorldAnswer World::ask(const WorldQuestion& question, const Budget& budget) noex
       fill_unasked(question.kind, pair);
     } else {
       WorldState::PairMemory& memory = s.memory(at);
-      ask_query(question, memory.query, memory.manifold, to_isometry(at.pose),
-                BudgetMeter(budget, all.sphere_tests).rest(), pair);
+      ask_query(question, memory.query, memory.manifold ? &*memory.manifold : nullptr,
+                to_isometry(at.pose), BudgetMeter(budget, all.sphere_tests).rest(), pair);
       if (pair.manifold != nullptr) memory.felt = s.felt;
     }
     pair.rotation_error = s.rotation_error_of(pair.bodies);
@@ -143,7 +148,7 @@ WorldAnswer World::ask(const WorldQuestion& question, const Budget& budget) noex
 
 const ContactManifold* World::manifold(BodyIndex a, BodyIndex b) const noexcept {
   const WorldState::PairMemory* const memory = state_->find(a, b);
-  return memory != nullptr && memory->felt == state_->felt ? &memory->manifold : nullptr;
+  return memory != nullptr && memory->felt == state_->felt ? &*memory->manifold : nullptr;
 }
 
 WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {

@@ -24,8 +24,10 @@ class PairBytes {
   std::uint64_t of(const SphereTree& a, const SphereTree& b) {
     const auto [at, is_new] = known_.try_emplace({&parts_of(a), &parts_of(b)}, 0);
     if (is_new) {
-      at->second = QueryState::bytes_for(a, b, options_.query) +
-                   ContactReducer::bytes_for(a, b, options_.manifold);
+      at->second = QueryState::bytes_for(a, b, options_.query);
+      if (a.has_voxels() && b.has_voxels()) {
+        at->second += ContactReducer::bytes_for(a, b, options_.manifold);
+      }
     }
     return at->second;
   }

@@ -62,9 +62,11 @@ double moved_error(const SphereTree& moving, const BodyPose& pose) noexcept {
 
 WorldState::PairMemory::PairMemory(BodyPair pair, const Body& a, const Body& b,
                                    const WorldOptions& options)
-    : bodies(pair),
-      query(a.tree, b.tree, options.query),
-      manifold(a.tree, b.tree, query.policy(), options.manifold) {}
+    : bodies(pair), query(a.tree, b.tree, options.query) {
+  if (a.tree.has_voxels() && b.tree.has_voxels()) {
+    manifold.emplace(a.tree, b.tree, query.policy(), options.manifold);
+  }
+}
 
 WorldState::Answers::Answers(std::size_t most)
     : room(most), near(most), pairs(most), nearest(most) {
@@ -94,8 +96,7 @@ PairAtPose WorldState::look(BodyPair pair) const noexcept {
   if (!broad.has(pair.a) || !broad.has(pair.b)) return at;
   const SphereTree &a = bodies[pair.a].tree, &b = bodies[pair.b].tree;
   at.pose = between(bodies[pair.a].pose, bodies[pair.b].pose);
-  const auto relative =
-      relative_pose(to_isometry(at.pose), parts_of(a).lattice, parts_of(b).lattice);
+  const auto relative = relative_pose(to_isometry(at.pose), parts_of(a).origin, parts_of(b).origin);
   if (!relative) {  // no double holds the way: over a third of the largest is between them
     at.status = QueryStatus::kNotPrepared;
     at.roots = {0.25 * kLargestDistance, kLargestDistance};

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -115,7 +116,7 @@ struct WorldState {
     PairMemory(BodyPair pair, const Body& a, const Body& b, const WorldOptions& options);
     BodyPair bodies;
     Query query;
-    ContactManifold manifold;
+    std::optional<ContactManifold> manifold;  // only of two bodies with voxels
     std::uint64_t felt = 0;  // the question of contacts that filled the manifold last
   };
   /// A pair that may be the nearest, by the balls of its bodies.
