@@ -12,7 +12,7 @@ namespace ist::answers {
 /// The two trees of a query, and the sphere policy that it uses.
 struct Bodies {
   SphereTree fixed, moving;
-  SpherePolicy policy;                          ///< means nothing if a body has no voxels
+  SpherePolicy policy;                          ///< means nothing if a body lacks voxels
   LengthUnit told_unit = LengthUnit::kUnknown;  ///< by the user, for trees without a unit
   double moving_factor = 1;                     ///< that converted the lengths of the moving mesh
   /// How messages call the bodies: by the names of their files, if there are any.
@@ -22,7 +22,7 @@ struct Bodies {
 
   /// Returns whether both bodies have voxels: leaf pairs and contacts are answers about voxels.
   [[nodiscard]] bool have_voxels() const { return fixed.has_voxels() && moving.has_voxels(); }
-  /// Returns the policy of a query; nothing if a body has no voxels.
+  /// Returns the policy of a query; nothing if a body lacks voxels.
   [[nodiscard]] std::optional<SpherePolicy> query_policy() const {
     return have_voxels() ? std::optional(policy) : std::nullopt;
   }

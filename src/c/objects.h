@@ -65,7 +65,7 @@ struct QueryObject {
 [[nodiscard]] constexpr std::int32_t spheres_of(SpherePolicy policy) noexcept {
   return static_cast<std::int32_t>(policy) + IST_SPHERES_SIMPLE;
 }
-/// Converts the policy of a tree or a query; IST_SPHERES_DEFAULT if it has no voxels.
+/// Converts the policy of a tree or a query; IST_SPHERES_DEFAULT if it lacks voxels.
 [[nodiscard]] constexpr std::int32_t spheres_of(SpherePolicy policy, bool has_voxels) noexcept {
   return has_voxels ? spheres_of(policy) : IST_SPHERES_DEFAULT;
 }

@@ -263,6 +263,9 @@ Bodies load_bodies(const BodyFiles& files) {
   const bool triangles = fixed.has_triangles() && moving.has_triangles();
   const bool voxels =
       files.voxels == Voxels::kMade || (files.voxels == Voxels::kNeeded && !triangles);
+  for (const LoadedBody* body : {&fixed, &moving}) {
+    if (files.voxels == Voxels::kMade && body->tree) require_voxels(*body->tree, body->name());
+  }
   double voxel_size = files.voxel_size.value_or(0);
   if (!both_are_trees && !files.voxel_size && voxels) {
     voxel_size = default_voxel_size(std::min(fixed.extent, moving.extent));
@@ -277,10 +280,6 @@ Bodies load_bodies(const BodyFiles& files) {
   bodies.moving_has_border = moving.checked.has_border;
   bodies.policy =
       files.policy.value_or(std::min(bodies.fixed.tightest(), bodies.moving.tightest()));
-  if (files.voxels == Voxels::kMade) {
-    require_voxels(bodies.fixed, fixed.name());
-    require_voxels(bodies.moving, moving.name());
-  }
   if (bodies.have_voxels()) {
     bodies.fixed.require(bodies.policy, fixed.name());
     bodies.moving.require(bodies.policy, moving.name());

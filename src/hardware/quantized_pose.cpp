@@ -184,6 +184,8 @@ std::array<std::int32_t, 3> move_centre(const QuantizedPose& pose,
 
 QuantizedPose quantize_pose(const Eigen::Isometry3d& pose, const SphereTree& fixed,
                             const SphereTree& moving) {
+  fixed.require(SpherePolicy::kSimple, "fixed");  // the circuit reads voxels
+  moving.require(SpherePolicy::kSimple, "moving");
   return quantize_pose(pose, voxels_of(fixed).lattice, voxels_of(moving).lattice);
 }
 

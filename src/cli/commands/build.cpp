@@ -48,7 +48,7 @@ void take_frame(const std::string& name, const std::filesystem::path& file, Tria
 
 constexpr std::string_view kDefaultSpheres = to_string(BuildOptions{}.spheres);
 
-// Refuses what belongs to voxels if there are none.
+// Refuses the options of voxels without a voxel size.
 void check_voxels(const BuildArguments& options) {
   check_voxel_size(options.voxel_size);
   if (options.voxel_size) return;

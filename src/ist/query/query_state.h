@@ -41,7 +41,7 @@ struct QueryState {
   [[nodiscard]] IST_LOOP_API static std::size_t bytes_for(const SphereTree& fixed,
                                                           const SphereTree& moving,
                                                           const QueryOptions& options);
-  /// Returns the policy of a query of two trees; kSimple if one of them has no voxels.
+  /// Returns the policy of a query of two trees; kSimple if one of them lacks voxels.
   [[nodiscard]] static SpherePolicy policy_of(const SphereTree& fixed, const SphereTree& moving,
                                               const QueryOptions& options) noexcept {
     return options.policy.value_or(std::min(fixed.tightest(), moving.tightest()));
@@ -97,7 +97,7 @@ struct QueryState {
   SpherePolicy policy;
   const Kernels& kernels;
   int workers;
-  std::optional<SearchPlan> plan;  // only with voxels, as all that leaves need
+  std::optional<SearchPlan> plan;  // only with voxels, as the next three
   std::size_t bytes;
   std::variant<std::monostate, Search, SharedSearch> searches;  // made after the plan it refers to
   std::optional<CachedSearch> cached;

@@ -56,10 +56,10 @@ inline constexpr std::array kSpherePolicies = {SpherePolicy::kSimple, SpherePoli
 
 /// The file that a mesh was read from, and the unit of the mesh's lengths.
 struct MeshSource {
-  /// The file's name without its folder, empty where unknown: UTF-8, at most 255 bytes, none of
-  /// them a control character, a slash or a backslash.
+  /// The file's name without its folder, empty if unknown: UTF-8, at most 255 bytes, without
+  /// control characters, slashes and backslashes.
   std::string name = {};
-  std::uint64_t hash = 0;                  ///< XXH3-64 of the file's bytes; 0 where unknown
+  std::uint64_t hash = 0;                  ///< XXH3-64 of the file's bytes; 0 if unknown
   LengthUnit unit = LengthUnit::kUnknown;  ///< of the mesh's lengths
 
   /// Compares all members.
@@ -96,18 +96,18 @@ class IST_API SphereTree {
   [[nodiscard]] int depth() const noexcept;
   /// Whether the outer side of the surface is known or assumed.
   [[nodiscard]] Orientation orientation() const noexcept;
-  /// The centres of all leaf cubes, mesh coordinates, in the order by which LeafPair counts them.
+  /// The centres of all leaf cubes, mesh coordinates, in the order of the indices of LeafPair.
   /// Empty without voxels. Cost: 20 ns a leaf.
   [[nodiscard]] std::vector<Eigen::Vector3d> leaf_centres() const;
 
-  /// The last of kSpherePolicies that the tree has. It has those before it too. kSimple without
-  /// voxels, though the tree has no spheres then.
+  /// The last of kSpherePolicies that the tree has. It has those before it too. Without voxels this
+  /// is kSimple, and has() is false.
   [[nodiscard]] SpherePolicy tightest() const noexcept;
   /// Whether the tree has those spheres; false without voxels.
   [[nodiscard]] bool has(SpherePolicy policy) const noexcept {
     return has_voxels() && policy <= tightest();
   }
-  /// Throws kPolicyMissing, naming `body` and the remedy, if the tree has no such spheres.
+  /// Throws kPolicyMissing if the tree lacks those spheres. The error names `body` and the remedy.
   void require(SpherePolicy policy, std::string_view body) const;
 
   /// The triangles that the build oriented and, unless it was told not to, welded. They are the
@@ -131,7 +131,7 @@ class IST_API SphereTree {
   /// voxels no triangle does.
   [[nodiscard]] double bounding_radius() const noexcept;
   /// The radius of the largest leaf sphere; 0 without voxels. Precondition: has(policy), or the
-  /// tree has no voxels.
+  /// tree lacks voxels.
   [[nodiscard]] double largest_leaf_radius(SpherePolicy policy) const noexcept;
   /// Bytes in memory, without the 24 a triangle that ist/measure.h adds at its first use.
   [[nodiscard]] std::uint64_t bytes() const noexcept;
@@ -145,8 +145,8 @@ class IST_API SphereTree {
 
 /// The options of build_tree().
 struct BuildOptions {
-  /// Edge of a voxel, mesh units; 0: no voxels. Leaf pairs and contacts need voxels. Triangles
-  /// alone answer all other questions, and are built in a tenth of the time.
+  /// Edge of a voxel, mesh units; 0: the tree gets no voxels. Only leaf pairs and contacts need
+  /// them. A build without them takes a tenth of the time.
   double voxel_size = 0;
   /// The tightest spheres to save, round voxels; implicit ones cost nothing.
   SpherePolicy spheres = SpherePolicy::kSlab;

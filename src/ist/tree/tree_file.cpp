@@ -24,7 +24,7 @@
 //     f64 × 3   the grid's corner      f64  voxel size
 //     u32       cells an axis          u32  depth
 //     u32       orientation            u32  sections: 1 balls, 2 triangles, 4 proximity, 8 slabs
-//     u64       hash of the mesh's file, 0 where unknown
+//     u64       hash of the mesh's file, 0 if unknown
 //     u8        unit: 0 unknown, 1 millimetre, 2 metre, 3 inch, 4 micrometre
 //     u8        frame: 0 unknown, 1 RAS, 2 LPS
 //     u16       0
@@ -39,7 +39,7 @@
 //                 u32 …, u32 …         the lists' beginnings (leaves + 1), their entries
 //     proximity:  u32, u32 × depth, u32, u8 …   depth, nodes, leaves, masks
 //
-// A file whose voxel size is 0 is of a tree without voxels: its corner, cells, depth and list
+// A file whose voxel size and cells are 0 is of a tree without voxels. Its corner, depth and list
 // entries are 0 too, its one section has the triangles, and it lacks the nodes, masks, normals and
 // lists.
 //
@@ -123,7 +123,7 @@ bool all_finite(const Float* values, std::size_t count) {
   return bad == 0;
 }
 
-// The length of the name is verified at once, and all else by verify_source().
+// Verifies the length of the name. verify_source() verifies the rest.
 MeshSource read_source(TreeReader& reader, const Header& header) {
   reader.require(header.name_bytes <= kMaxSourceName, "the mesh's name is longer than 255 bytes");
   const std::vector<char> name = reader.array<char>(header.name_bytes);
@@ -205,11 +205,13 @@ void verify_mesh(const TreeReader& reader, const TriangleMesh& mesh) {
   }
 }
 
-// Verifies what a tree without voxels has in place of a grid.
+bool is_without_voxels(const Header& header) { return header.voxel_size == 0 && header.cells == 0; }
+
+// Verifies the header and the triangles of a tree without voxels.
 void verify_no_voxels(const TreeReader& reader, const Header& header, const TriangleMesh& mesh) {
   constexpr std::array<double, 3> kNoCorner{};
   reader.require(header.sections == kTrianglesSection, "without voxels it has other sections");
-  reader.require(header.corner == kNoCorner && header.cells == 0 && header.depth == 0,
+  reader.require(header.corner == kNoCorner && header.depth == 0,
                  "it has a grid without a voxel size");
   verify_mesh(reader, mesh);
   reader.require(has_usable_extent(bounding_box(mesh)), "its extent is none that a mesh may have");
@@ -353,7 +355,7 @@ SphereTree read(TreeReader reader) {
   const auto header = reader.value<Header>();
   const auto sections = header.sections;
   MeshSource source = read_source(reader, header);
-  if (header.voxel_size == 0) return read_without_voxels(reader, header, std::move(source));
+  if (is_without_voxels(header)) return read_without_voxels(reader, header, std::move(source));
   const Lattice lattice{header.corner, header.voxel_size, header.cells,
                         static_cast<int>(header.depth)};
   StoredOctree stored = read_octree(reader, header.depth);

@@ -96,7 +96,8 @@ struct TreeVoxels {
     return implicit_ball(policy, lattice, level, cube_centre,
                          level == 0 ? std::uint8_t{0} : octree.mask(level, node));
   }
-  /// Returns the sphere that the traversal tests, which holds those of all leaves below the node.
+  /// Returns the sphere that the traversal tests. It holds the spheres of all leaves below the
+  /// node.
   [[nodiscard]] Ball nested_ball(SpherePolicy policy, int level, std::uint32_t node,
                                  const Eigen::Vector3d& cube_centre) const noexcept {
     return ist::nested_ball(policy, lattice, level, cube_centre,
@@ -154,7 +155,7 @@ using detail::TreeVoxels;
   IST_ASSERT(parts_of(tree).voxels);
   return *parts_of(tree).voxels;
 }
-/// Throws kVoxelsMissing, naming `body` and the remedy, if the tree has no voxels.
+/// Throws kVoxelsMissing if the tree lacks voxels. The error names `body` and the remedy.
 void require_voxels(const SphereTree& tree, std::string_view body);
 
 /// Returns the middle of the box round all vertices in use: the origin of a tree without voxels.

@@ -62,7 +62,7 @@ void ask_query(const WorldQuestion& question, Query& query, ContactManifold* man
       break;
     }
     case WorldQuestion::kContacts:
-      if (manifold == nullptr) {  // a body has no voxels
+      if (manifold == nullptr) {  // a body lacks voxels
         pair.status = QueryStatus::kNoVoxels;
         pair.complete = false;
         break;

@@ -181,7 +181,7 @@ IST_C_API ist_status ist_tree_get_mesh(const ist_tree* tree, ist_mesh** mesh) IS
 /** The properties of a tree; lengths in mesh units. */
 typedef struct ist_tree_info {
   size_t struct_size;         /**< the size of this struct, bytes */
-  double voxel_size;          /**< edge of a voxel; 0: the tree has no voxels */
+  double voxel_size;          /**< edge of a voxel; 0: the tree lacks voxels */
   uint64_t leaves;            /**< voxels on the surface; 0 without voxels */
   uint64_t triangles;         /**< triangles kept */
   uint64_t bytes;             /**< memory in use */
@@ -238,7 +238,7 @@ typedef struct ist_query_options {
 
 /** Creates a query and reserves all its memory. `options` may be NULL. Both trees may be the same,
  * and may be freed afterwards. Errors: IST_POLICY_MISSING, also for spheres of a tree without
- * voxels; IST_VOXELS_MISSING if one tree has no voxels and the other no triangles;
+ * voxels; IST_VOXELS_MISSING if one tree lacks voxels and the other no triangles;
  * IST_TARGET_MISSING, IST_MEMORY_LIMIT, IST_OUT_OF_MEMORY, IST_ARGUMENT_INVALID. Cost: a few ms. */
 IST_C_API ist_status ist_query_create(const ist_tree* fixed, const ist_tree* moving,
                                       const ist_query_options* options,
