@@ -49,6 +49,30 @@ TEST_F(Files, BuildSaysWhatItMade) {
   EXPECT_TRUE(says(plain.out, "ms"));
 }
 
+TEST_F(Files, ATreeWithoutVoxelsIsShownAndNotExported) {
+  const std::string tree = path("alone.ist");
+  ist_well({"build", ball(), "-o", tree, "--unit", "mm"});
+  const json line = json_lines(ist_well({"info", tree, "--json"}).out).at(0);
+  for (const char* key : {"voxel_size", "cells", "depth", "voxels", "nodes"}) {
+    ASSERT_TRUE(line.contains(key)) << key;
+    EXPECT_TRUE(line[key].is_null()) << key;
+  }
+  EXPECT_EQ(line["levels"], json::array());
+  EXPECT_EQ(line["triangles"], true);
+  EXPECT_EQ(line["closed"], true);
+  EXPECT_EQ(line["self_intersections"], 0);
+  const CommandResult words = ist_well({"info", tree});
+  EXPECT_TRUE(says(words.out, "a tree of triangles without voxels"));
+  EXPECT_TRUE(says(words.out, "orientation outward, 320 triangles kept\n"));
+  for (const char* what : {"voxels", "spheres"}) {
+    const CommandResult refused =
+        ist({"export", tree, "--what", what, "--level", "0", "-o", path("out.vtp")});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_TRUE(says(refused.err, "no voxels: build it with a voxel size"));
+    EXPECT_FALSE(exists("out.vtp"));
+  }
+}
+
 TEST_F(Files, BuildSavesTheSpheresThatItIsAskedFor) {
   std::uintmax_t bytes = 0;
   for (const char* spheres : {"table", "tight", "slab"}) {

@@ -15,6 +15,8 @@ try:
 except ImportError:
     skip("/usr/bin/python3 has no matplotlib: scripts/setup.sh --python installs it")
 
+import ist
+
 SCRIPT = RECIPES / "distance_map.py"
 # Runs the script as if a module were not installed.
 WITHOUT = "import runpy, sys; sys.modules[sys.argv.pop(1)] = None; sys.argv.pop(0); runpy.run_path(sys.argv[0], run_name='__main__')"
