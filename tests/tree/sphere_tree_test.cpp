@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <string>
@@ -232,6 +233,57 @@ TEST(SphereTree, SpheresThatItLacksAreNamedWithTheRemedy) {
   expect_has_up_to(of(SpherePolicy::kTable), SpherePolicy::kTable);
   expect_has_up_to(of(SpherePolicy::kTight), SpherePolicy::kTight);
   expect_has_up_to(of(SpherePolicy::kSlab), SpherePolicy::kSlab);
+}
+
+TEST(SphereTree, WithoutVoxelsSaysSo) {
+  const SphereTree tree = build_tree(test::box({1, 2, 3}, {3, 8, 4}));
+  EXPECT_FALSE(tree.has_voxels());
+  EXPECT_EQ(tree.voxel_size(), 0);
+  EXPECT_EQ(tree.leaf_count(), 0u);
+  EXPECT_EQ(tree.depth(), 0);
+  EXPECT_TRUE(tree.leaf_centres().empty());
+  EXPECT_TRUE(level_statistics(tree).empty());
+  EXPECT_FALSE(tree.has_proximity());
+  EXPECT_EQ(tree.tightest(), SpherePolicy::kSimple);
+  EXPECT_EQ(tree.orientation(), Orientation::kOutward);
+  EXPECT_EQ(tree.origin(), Eigen::Vector3d(2, 5, 3.5));
+  ASSERT_TRUE(tree.triangles());
+  EXPECT_EQ(tree.self_intersections(), 0u);
+  for (const SpherePolicy policy : kSpherePolicies) {
+    EXPECT_FALSE(tree.has(policy)) << to_string(policy);
+    EXPECT_EQ(tree.largest_leaf_radius(policy), 0) << to_string(policy);
+    const auto error = test::error_of([&] { tree.require(policy, "upper"); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ErrorCode::kPolicyMissing);
+    EXPECT_NE(std::string(error->what()).find("upper: the tree holds no voxels"),
+              std::string::npos);
+    EXPECT_NE(std::string(error->what()).find("build it with a voxel size"), std::string::npos);
+  }
+  EXPECT_TRUE(tree_of(test::box({1, 2, 3}, {3, 8, 4}), 0.5).has_voxels());
+}
+
+// |vertex - origin| <= radius in rationals, and the radius is no larger than it need be.
+TEST(SphereTree, WithoutVoxelsItsRadiusHoldsAllVertices) {
+  for (std::uint64_t seed = 1; seed <= test::samples(std::uint64_t{20}); ++seed) {
+    TriangleMesh mesh = random_mesh(seed, 6);
+    const double scale = std::ldexp(1.0, static_cast<int>(seed % 60) - 30);
+    for (Eigen::Vector3d& vertex : mesh.vertices) {
+      vertex = scale * vertex + Eigen::Vector3d(0, scale * 1e6, 0);
+    }
+    mesh.vertices.emplace_back(1e9 * scale, 0, 0);  // which no triangle names
+    const SphereTree tree = build_tree(mesh);
+    const mpq_class radius = tree.bounding_radius();
+    mpq_class farthest = 0;
+    for (const Triangle& triangle : tree.triangles()->triangles) {
+      for (const std::uint32_t vertex : triangle) {
+        const test::ExactPoint from =
+            test::exact(tree.triangles()->vertices[vertex]) - test::exact(tree.origin());
+        farthest = std::max(farthest, test::square(from));
+      }
+    }
+    ASSERT_LE(farthest, radius * radius) << seed;
+    ASSERT_GE(farthest * mpq_class(1 + 1e-14), radius * radius) << seed;
+  }
 }
 
 TEST(TreeStatistics, AddUpWhatTheLevelsHold) {

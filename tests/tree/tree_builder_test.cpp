@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 #include <xmmintrin.h>
 
+#include <cmath>
 #include <cstring>
+#include <string>
 
 #include "ist/base/parallel.h"
 #include "ist/tree/saved_spheres.h"
@@ -148,6 +150,45 @@ TEST(BuildTree, TheMemoryLimitCountsWhatTheTreeTakes) {
   options.voxel_size = std::stod(what.substr(what.find(before) + before.size()));
   const SphereTree tree = build_tree(test::icosphere(3, 1), options);
   EXPECT_LE(tree.bytes(), options.max_memory);
+}
+
+TEST(BuildTree, WithoutAVoxelSizeMakesTrianglesAlone) {
+  TriangleMesh mesh = test::inside_out(test::icosphere(2, 1));
+  BuildReport report;
+  const SphereTree alone = build_tree(mesh, {}, &report),
+                   voxels = build_tree(mesh, everything(0.2));
+  EXPECT_EQ(alone.triangles()->vertices, voxels.triangles()->vertices);
+  EXPECT_EQ(alone.triangles()->triangles, voxels.triangles()->triangles);
+  EXPECT_EQ(alone.orientation(), voxels.orientation());
+  EXPECT_EQ(report.turned_components, 1u);
+  ASSERT_EQ(report.stages.size(), 2u);
+  EXPECT_STREQ(report.stages[0].name, "orientation");
+  EXPECT_STREQ(report.stages[1].name, "triangle clusters");
+  EXPECT_LT(alone.bytes(), voxels.bytes());
+  EXPECT_TRUE(can_build_tree(mesh, {}));
+}
+
+TEST(BuildTree, WhatBelongsToVoxelsNeedsAVoxelSize) {
+  const TriangleMesh mesh = test::icosphere(1, 1);
+  const auto refusal = [&](const BuildOptions& options) {
+    EXPECT_FALSE(can_build_tree(mesh, options));
+    const auto error = test::error_of([&] { static_cast<void>(build_tree(mesh, options)); });
+    return error ? to_string(error->code()) + std::string(": ") + error->what() : "none";
+  };
+  const std::string remedy = "give a voxel size";
+  for (const BuildOptions& options :
+       {BuildOptions{.keep_triangles = false}, BuildOptions{.proximity = true}}) {
+    const std::string text = refusal(options);
+    EXPECT_TRUE(text.starts_with("argument-invalid")) << text;
+    EXPECT_NE(text.find(remedy), std::string::npos) << text;
+  }
+  for (const double size : {-1.0, std::nan(""), HUGE_VAL}) {
+    EXPECT_TRUE(refusal({.voxel_size = size}).starts_with("voxel-size-invalid")) << size;
+  }
+  EXPECT_TRUE(refusal({.max_memory = 1000}).starts_with("memory-limit"));
+  TriangleMesh point = test::coincident(3);
+  EXPECT_FALSE(can_build_tree(point, {}));
+  EXPECT_EQ(test::error_name([&] { static_cast<void>(build_tree(point)); }), "mesh-extent");
 }
 
 TEST(BuildTree, ShowsItsProgress) {

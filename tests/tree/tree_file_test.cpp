@@ -86,6 +86,28 @@ TEST(TreeFile, EveryCombinationOfSectionsComesBackAsItWas) {
   }
 }
 
+TEST(TreeFile, WithoutVoxelsComesBackAsItWas) {
+  TriangleMesh strip = test::open_strip(3);
+  strip.frame = PatientFrame::kLps;
+  for (const TriangleMesh& mesh : {test::icosphere(2, 1), strip}) {
+    BuildOptions options;
+    options.source = {"upper jaw.stl", 7, LengthUnit::kMillimetre};
+    const SphereTree tree = build_tree(mesh, options);
+    const std::string bytes = test::file_of(tree);
+    const SphereTree back = test::tree_of_bytes(bytes);
+    EXPECT_FALSE(back.has_voxels());
+    EXPECT_EQ(back.origin(), tree.origin());
+    EXPECT_EQ(back.bounding_radius(), tree.bounding_radius());
+    EXPECT_EQ(back.orientation(), tree.orientation());
+    EXPECT_EQ(back.source(), tree.source());
+    EXPECT_EQ(back.frame(), mesh.frame);
+    EXPECT_EQ(back.triangles()->frame, mesh.frame);
+    EXPECT_EQ(back.triangles()->vertices, tree.triangles()->vertices);
+    EXPECT_EQ(back.triangles()->triangles, tree.triangles()->triangles);
+    EXPECT_EQ(test::file_of(back), bytes);
+  }
+}
+
 TEST(TreeFile, EverySourceComesBackAsItWas) {
   BuildOptions options;
   options.voxel_size = 0.3;

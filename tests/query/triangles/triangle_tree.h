@@ -22,6 +22,17 @@ namespace ist::test {
   return tree_with_triangles(mesh, box.sizes().maxCoeff() / cells);
 }
 
+/// Each pair of two bodies, with voxels and without them.
+template <class Ask>
+void for_voxels_or_none(const TriangleMesh& fixed, const TriangleMesh& moving, double voxel_size,
+                        const Ask& ask) {
+  const SphereTree fixed_trees[] = {tree_with_triangles(fixed, voxel_size), build_tree(fixed)},
+                   moving_trees[] = {tree_with_triangles(moving, voxel_size), build_tree(moving)};
+  for (const SphereTree& a : fixed_trees) {
+    for (const SphereTree& b : moving_trees) ask(a, b);
+  }
+}
+
 /// The same tree without its triangles: as it would have been built.
 [[nodiscard]] inline SphereTree without_triangles(const SphereTree& tree) {
   const TreeVoxels& voxels = voxels_of(tree);

@@ -57,6 +57,19 @@ TEST_F(WorldMemory, IsAskedForBeforeItIsReserved) {
   }
 }
 
+TEST_F(WorldMemory, WithoutVoxelsIsThatOfTheQueryAlone) {
+  const SphereTree alone = build_tree(icosphere(3, 1));
+  World world;
+  world.add(trees()[0], shift({0, 0, 0}));
+  world.add(alone, shift({1.5, 0, 0}));
+  world.add(alone, shift({3, 0, 0}));
+  EXPECT_EQ(world.bytes_for(0, 1), Query(trees()[0], alone).bytes());
+  EXPECT_EQ(world.bytes_for(1, 2), Query(alone, alone).bytes());
+  const std::uint64_t needed = world.bytes_needed();
+  world.prepare();
+  EXPECT_EQ(world.bytes(), needed);
+}
+
 TEST_F(WorldMemory, BeyondTheLimitNamesThePair) {
   WorldOptions options = small_world();
   World roomy(options);
