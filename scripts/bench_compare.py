@@ -1,4 +1,4 @@
-"""Compares the benchmark runs of two commits: see bench_compare.sh, which makes them."""
+"""Compares the benchmark runs of two commits. bench_compare.sh makes them."""
 
 import json
 import pathlib
@@ -9,13 +9,13 @@ NANOSECONDS = {"ns": 1, "us": 1e3, "ms": 1e6, "s": 1e9}
 
 
 def nanoseconds(benchmark):
-    """By the clock that the benchmark chose: the processor's, which stands still while others run, or the wall's."""
+    """Returns the time by the clock that the benchmark chose. The processor's clock stands still while other programs run."""
     by_wall = benchmark["name"].endswith(("/real_time", "/manual_time"))
     return benchmark["real_time" if by_wall else "cpu_time"] * NANOSECONDS[benchmark["time_unit"]]
 
 
 def read(folder, side):
-    """Times by benchmark, in ns, one a run, from the files SIDE-RUN-PROGRAM.json."""
+    """Returns the times of each benchmark in ns, one a run, from the files SIDE-RUN-PROGRAM.json."""
     times, runs = {}, set()
     for file in sorted(pathlib.Path(folder).glob(f"{side}-*.json")):
         run = file.name.split("-")[1]
@@ -33,48 +33,50 @@ def read(folder, side):
     return {name: list(by_run.values()) for name, by_run in times.items()}
 
 
-def verdict(base, head):
-    """Slower if all new times exceed all old ones, faster if all are less, otherwise neither."""
-    if min(head) > max(base):
+def verdict(base, head, least):
+    """Returns SLOWER if all new times exceed all old ones, and faster if all are shorter, by a factor of the medians of at least `least`."""
+    times = statistics.median(head) / statistics.median(base)
+    if min(head) > max(base) and times > least:
         return "SLOWER"
-    return "faster" if max(head) < min(base) else "-"
+    return "faster" if max(head) < min(base) and times < 1 / least else "-"
 
 
 def readable(time):
-    """A time in ns with a unit that suits it."""
+    """Returns a time, given in ns, in the unit that suits it."""
     unit = next((unit for unit in ("s", "ms", "us") if time >= NANOSECONDS[unit]), "ns")
     return f"{time / NANOSECONDS[unit]:.3g} {unit}"
 
 
-def compare(base, head):
-    """The lines of the table, and the names of what is slower. Precondition: something is on both sides."""
+def compare(base, head, base_name="base", head_name="head", least=1):
+    """Returns the lines of the table, and the names of the slower rows. Raises ValueError if the sides share no row."""
     both = [name for name in base if name in head]
-    width = max(len(name) for name in both)
-    lines = [f"{'benchmark':<{width}} {'base':>9} {'head':>9}  ratio  best head/worst base"]
+    if not both:
+        raise ValueError(f"nothing is on both sides: {len(base)} in {base_name}, {len(head)} in {head_name}")
+    width = max(map(len, both))
+    lines = [f"{'':<{width}} {base_name:>9} {head_name:>9}  ratio  best {head_name}/worst {base_name}"]
     slower = []
     for name in both:
         old, new = statistics.median(base[name]), statistics.median(head[name])
-        said = verdict(base[name], head[name])
-        lines.append(f"{name:<{width}} {readable(old):>9} {readable(new):>9} {new / old:6.3f} "
-                     f"{min(head[name]) / max(base[name]):6.3f}  {said}")
+        said = verdict(base[name], head[name], least)
+        lines.append(f"{name:<{width}} {readable(old):>9} {readable(new):>9} {new / old:6.3f} {min(head[name]) / max(base[name]):6.3f}  {said}")
         if said == "SLOWER":
             slower.append(name)
-    for side, here, there in (("base", base, head), ("head", head, base)):
+    for side, here, there in ((base_name, base, head), (head_name, head, base)):
         lines += [f"only in {side}, not compared: {name}" for name in here if name not in there]
     return lines, slower
 
 
-def main(folder):
+def report_errors(script, main, folder):
+    """Returns the exit code of a comparison. It is 2 if the runs cannot be compared."""
     try:
-        base, head = read(folder, "base"), read(folder, "head")
+        return main(folder)
     except (OSError, ValueError, KeyError) as error:
-        print(f"bench_compare: {error}", file=sys.stderr)
+        print(f"{script}: {error}", file=sys.stderr)
         return 2
-    if not any(name in head for name in base):
-        print(f"bench_compare: no benchmark is on both sides: {len(base)} in base, {len(head)} in head",
-              file=sys.stderr)
-        return 2
-    lines, slower = compare(base, head)
+
+
+def main(folder):
+    lines, slower = compare(read(folder, "base"), read(folder, "head"))
     print("\n".join(lines))
     print(f"{len(slower)} slower: {', '.join(slower)}" if slower else "nothing is slower")
     print(f"raw results: {folder}")
@@ -82,4 +84,4 @@ def main(folder):
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))
+    sys.exit(report_errors("bench_compare", main, sys.argv[1]))

@@ -1,26 +1,24 @@
 #!/usr/bin/env bash
-# Tells whether a commit is slower than another: builds both as the benchmarks are built, lets them
-# run in turn, first the one and then the other first, and compares the times. A benchmark is slower
-# where its best time in HEAD is worse than its worst in BASE. Where nothing changed that happens to
-# one in 3,400 by chance with seven runs, to one in 20 with three, and to benchmarks that are measured
-# together at once: ask again before you believe one row.
+# Tells whether a commit is slower than another. It builds both as the benchmarks are built, runs them in turn, and compares the times.
+# A benchmark is slower if its best time in HEAD is worse than its worst in BASE. If nothing changed, that happens to one benchmark in
+# 3,400 by chance with seven runs, to one in 20 with three, and to benchmarks that are measured together at once. So ask again before
+# you believe one row.
 #
 #   scripts/bench_compare.sh BASE HEAD    commits; with the same one twice it shows the noise
 #     --runs N          of each side, at least 3, by default 7
 #     --filter REGEX    benchmarks by name, of all programs, instead of the usual ones
 #
-# The usual ones are some 45, of building, the fast and the published query, contact points and
-# kernels; seven runs of both take 4 minutes, and building both some more. Raw results stay in
-# build/compare/. Exits with 0 where nothing is slower, 1 where something is, 2 where it could not
-# compare.
+# The usual ones are some 45, of building, the fast and the published query, contact points and kernels. Seven runs of both take
+# 4 minutes, and building both some more. Raw results stay in build/compare/. The exit code is 0 if no benchmark is slower, 1 if one is,
+# and 2 if the commits could not be compared.
 #
-#   IST_DATA_DIR=FOLDER    where the real meshes are; by default ../shared/data
+#   IST_DATA_DIR=FOLDER    the folder of the real meshes; by default ../shared/data
 set -eEuo pipefail
 cd "$(dirname "$0")/.."
 trap 'exit 2' ERR
 fail() { echo "bench_compare: $*" >&2; exit 2; }
 
-# Program by program, what is compared of it.
+# The programs, and the benchmarks of each that are compared.
 programs=(build_bench query_bench reference_bench contact_bench kernel_bench)
 declare -A usual=(
   [build_bench]='^build/(table|slab)/0\.[48]'
@@ -32,7 +30,7 @@ declare -A usual=(
 commits=() runs=7 filter=
 while [ $# -gt 0 ]; do
   case $1 in
-    -h | --help) sed -n '2,19s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0"; exit 0 ;;
     --runs | --filter) [ $# -gt 1 ] || fail "$1 needs a value; see --help" ;;&
     --runs) runs=$2; shift ;;
     --filter) filter=$2; shift ;;
@@ -50,8 +48,7 @@ for i in 0 1; do
   commit[$side]=$(git rev-parse --verify --quiet --end-of-options "${commits[i]}^{commit}") ||
     fail "'${commits[i]}' is no commit of this repository: git log shows them"
 done
-[ -z "$(git status --porcelain)" ] ||
-  echo "bench_compare: what is not committed is not compared" >&2
+[ -z "$(git status --porcelain)" ] || echo "bench_compare: changes that no commit holds are not compared" >&2
 scripts/setup.sh --bench >&2
 
 mkdir -p build/compare
@@ -95,23 +92,18 @@ for side in base head; do
   [ -n "${here[$side]:-}" ] || fail "$side has no benchmark that is to be compared"
 done
 
-measure() {  # side, number of the run
-  local program file
-  for program in ${here[$1]}; do
-    file=$results/$1-$2-$program
-    "$trees/$1/build/bench/bench/$program" --benchmark_filter="${filter:-${usual[$program]}}" \
-      --benchmark_min_time=0.2 --benchmark_out="$file.json" --benchmark_out_format=json \
-      --benchmark_context=commit="${commit[$1]:0:9}" >"$file.log" 2>&1 ||
-      fail "$1: $program failed; see $file.log"
-  done
-}
 began=$SECONDS
 for ((run = 1; run <= runs; ++run)); do
   order="base head"
   [ $((run % 2)) = 1 ] || order="head base"
   for side in $order; do
     echo "bench_compare: run $run of $runs, $side, after $((SECONDS - began)) s" >&2
-    measure "$side" "$run"
+    for program in ${here[$side]}; do
+      file=$results/$side-$run-$program
+      "$trees/$side/build/bench/bench/$program" --benchmark_filter="${filter:-${usual[$program]}}" \
+        --benchmark_min_time=0.2 --benchmark_out="$file.json" --benchmark_out_format=json \
+        --benchmark_context=commit="${commit[$side]:0:9}" >"$file.log" 2>&1 || fail "$side: $program failed; see $file.log"
+    done
   done
 done
 slower=0

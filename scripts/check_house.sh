@@ -6,6 +6,11 @@ cd "$(dirname "$0")/.."
 failed=0
 library="src/ist src/c src/loop src/models src/sweep simd"
 breach() { echo "$*" >&2; failed=1; }
+never() {  # a breach, its pattern, folders, and a pattern of allowed lines
+  local found
+  found=$(grep -rnE "$2" $3 | grep -vE "${4:-^$}" || true)
+  [ -z "$found" ] || breach "$1: $found"
+}
 
 # Folders are layers. Each includes those before it: its folder, and the names by which others include it.
 layers=(base mesh voxel tree simd query measure c models haptics scene sweep)
@@ -24,29 +29,22 @@ name() {
 }
 for i in "${!layers[@]}"; do
   for later in "${layers[@]:i+1}"; do
-    found=$(grep -rnE "#include \"($(name "$later"))" $(folder "${layers[i]}") | grep -vE '^src/c/ist_c_(models|servo|sweep)\.cpp' || true)
-    [ -z "$found" ] || breach "${layers[i]} includes $later, which stands after it: $found"
+    never "${layers[i]} includes $later, which stands after it" "#include \"($(name "$later"))" "$(folder "${layers[i]}")" '^src/c/ist_c_(models|servo|sweep)\.cpp'
   done
 done
 # Headers for users include several layers. Angle brackets and paths upwards would hide a layer.
-found=$(grep -rnE '#include "ist/(ist|measure|haptics|scene)\.h"' $library | grep -vE '^src/(ist/(ist|measure)\.h|loop/(include|scene)/|c/)' || true)
-[ -z "$found" ] || breach "a layer includes a header of users: $found"
-found=$(grep -rnE '#include (<(ist|simd)/|"\.\./)' $library src/answers src/cli src/verify src/advise || true)
-[ -z "$found" ] || breach "an include that hides its layer: $found"
-found=$(grep -rnE '#include "(answers|cli|advise)/' src/verify src/hardware; grep -rnE '#include "(answers|cli|verify)/' src/advise || true)
-[ -z "$found" ] || breach "tools know the library, not each other: $found"
-found=$(grep -rnE '#include "(cli|viewer)/' src/answers; grep -rnE '#include "cli/' src/viewer || true)
-[ -z "$found" ] || breach "the command and the page include the answers, and these none of both: $found"
-found=$(grep -rnE '#include "(answers|cli|import|verify|advise|hardware)/|#include "ist/hardware/' $library || true)
-[ -z "$found" ] || breach "the library sees no tool: $found"
-found=$(grep -rnE '#include "viewer/' src simd | grep -v '^src/viewer/' || true)
-[ -z "$found" ] || breach "the page stands behind all others: $found"
-found=$(grep -rnE '#include "ist/' src/hardware | grep -vE '"ist/(base|mesh|voxel|tree|hardware)/' || true)
-[ -z "$found" ] || breach "hardware includes more than base, mesh, voxel and tree: $found"
-found=$(grep -rnE '#include "simd/[a-z_]+-inl\.h"' src || true)
-[ -z "$found" ] || breach "vector code is for simd/ alone: $found"
+never "a layer includes a header of users" '#include "ist/(ist|measure|haptics|scene)\.h"' "$library" '^src/(ist/(ist|measure)\.h|loop/(include|scene)/|c/)'
+never "an include that hides its layer" '#include (<(ist|simd)/|"\.\./)' "$library src/answers src/cli src/verify src/advise"
+never "tools know the library, not each other" '#include "(answers|cli|advise)/' "src/verify src/hardware"
+never "tools know the library, not each other" '#include "(answers|cli|verify)/' src/advise
+never "the answers include neither the command nor the page" '#include "(cli|viewer)/' src/answers
+never "the page does not include the command" '#include "cli/' src/viewer
+never "the library sees no tool" '#include "(answers|cli|import|verify|advise|hardware)/|#include "ist/hardware/' "$library"
+never "only the page includes the page" '#include "viewer/' "src simd" '^src/viewer/'
+never "hardware includes more than base, mesh, voxel and tree" '#include "ist/' src/hardware '"ist/(base|mesh|voxel|tree|hardware)/'
+never "vector code is for simd/ alone" '#include "simd/[a-z_]+-inl\.h"' src
 
-only() {  # what, pattern, the one file (a pattern), where to look
+only() {  # a thing, its pattern, a pattern of the one file, folders
   local found
   found=$(grep -rlE "$2" $4 | grep -vxE "$3" || true)
   [ -z "$found" ] || breach "$1 is also in: $found"
@@ -69,13 +67,11 @@ only "what a processor or a system decides" '__x86_64__|__aarch64__|__linux__|_m
 only "a function of libm, whose bits depend on the platform" 'std::(sin|cos|tan|asin|acos|atan2?|sinh|cosh|tanh|exp2?|log(2|10|1p)?|pow|cbrt|hypot|fma|erf|tgamma)f?\(' 'none' "src/ist/base src/ist/mesh src/models src/ist/voxel src/ist/tree src/ist/query src/ist/measure src/sweep simd"
 only "a root of several numbers at once, whose bits depend on the processor (Eigen's is an estimate)" '\.r?sqrt\(\)' 'none' "src simd"
 # A test of sizes alone does not show it: padding can hide the difference.
-found=$(grep -rnE '^ +(const )?Eigen::(Isometry3|Affine3|Projective3|Transform|Matrix4|Vector4|Quaternion)[^&*()]* [a-z_]+( = [^;]*|\{[^;]*\})?;' $library --include='*.h' || true)
-[ -z "$found" ] || breach "a member whose alignment depends on the instruction set of who includes it: $found"
+never "a member whose alignment depends on the instruction set of who includes it" '^ +(const )?Eigen::(Isometry3|Affine3|Projective3|Transform|Matrix4|Vector4|Quaternion)[^&*()]* [a-z_]+( = [^;]*|\{[^;]*\})?;' "$library --include=*.h"
 
 twice=$(find src simd -name '*.h' -o -name '*.cpp' | xargs -n1 basename | sort | uniq -d)
 [ -z "$twice" ] || breach "two sources or headers share a name: $twice"
-found=$(grep -rnoE '[ ="]/[a-zA-Z]+/[^" ]*' perf/results || true)
-[ -z "$found" ] || breach "a result names a folder of the machine that it was made on: $found"
+never "a result names a folder of the machine that it was made on" '[ ="]/[a-zA-Z]+/[^" ]*' perf/results
 headers=$(($(grep -c '^ist/' src/package/public_headers.txt) + $(find src/{c,loop,models}/include -name '*.h' | wc -l)))
 [ "$headers" -le 35 ] || breach "$headers headers are installed: 35 are the most"
 exit $failed

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Sets up this machine, builds the command, times searches of two built-in jaws as they close, and measures their bite.
-# With arguments it only runs `ist demo` with them.
+# If it has arguments, it only passes them to `ist demo`.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/setup.sh >&2

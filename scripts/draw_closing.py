@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Draws what a hand feels where it closes two jaws: the force over time, and how far the hand goes beyond the tool.
+"""Draws the force on a hand that closes two jaws, over time, and how far the hand goes beyond the tool.
 
     scripts/draw_closing.py PATH/TO/ist OUTPUT.svg [SCENE.toml]
 
-All that is drawn comes from a recording by the command, run unpaced, so that it is the same on every machine. Without a
-scene it is the one of docs/haptics.md. Needs Debian's python3-matplotlib, so run it with the system's python3.
+The command records the motion unpaced, so the picture is the same on every machine. The default scene is in docs/haptics.md. The script needs
+Debian's python3-matplotlib, so run it with the system's python3.
 """
 import json
 import math
@@ -22,21 +22,13 @@ EVERY = 5  # ticks a point of the picture
 FORCE, STRETCH = "#b03a2e", "#1f618d"
 
 
-def readme_scene():
-    found = re.search(r"^```toml\n(.*?)^```$", PAGE.read_text(), re.DOTALL | re.MULTILINE)
-    if not found:
-        sys.exit(f"draw_closing: no ```toml block in {PAGE}: name a scene")
-    return found[1]
-
-
 def record(ist, scene, folder):
-    """The ticks of an unpaced run, the seconds of a tick, and the scene's unit."""
+    """Returns the ticks of an unpaced run, the seconds of a tick, and the scene's unit."""
     ticks = folder / "ticks.jsonl"
     run = subprocess.run([ist, "run", scene, "--unpaced", "--record", ticks, "--json"], check=True, stdout=subprocess.PIPE)
     period = 1 / json.loads(run.stdout.splitlines()[-1])["rate"]
     unit = re.search(r'^unit\s*=\s*"(\w+)"', scene.read_text(), re.MULTILINE)[1]
-    lines = map(json.loads, ticks.open())
-    return [line for line in lines if "device" in line], period, unit
+    return [line for line in map(json.loads, ticks.open()) if "device" in line], period, unit
 
 
 def draw(ticks, period, unit, output):
@@ -67,7 +59,7 @@ def main(ist, output, scene=None):
         folder = pathlib.Path(name)
         if scene is None:
             scene = folder / "closing.toml"
-            scene.write_text(readme_scene())
+            scene.write_text(re.search(r"^```toml\n(.*?)^```$", PAGE.read_text(), re.DOTALL | re.MULTILINE)[1])
         ticks, period, unit = record(pathlib.Path(ist).resolve(), pathlib.Path(scene), folder)
     if not any(tick["leaf_pairs"] > 0 for tick in ticks):
         sys.exit("draw_closing: nothing touches in this scene: let the plan go farther")

@@ -2,11 +2,10 @@
 """Draws the pictures of docs/how-it-works.md, and says the sentence below each of them, whose numbers are measured with it.
 
     scripts/draw_how.py PATH/TO/ist PATH/TO/libist_loop.so FOLDER             draws, and prints the sentences
-    scripts/draw_how.py PATH/TO/ist PATH/TO/libist_loop.so FOLDER --check     draws, and fails where the page has another sentence
+    scripts/draw_how.py PATH/TO/ist PATH/TO/libist_loop.so FOLDER --check     draws, and fails if the page has another sentence
 
-All that is drawn comes from the command, but for two things: the Python package asks the library for the pair cache that a query
-carries, and the nodes of triangle clusters, which nothing public has, follow from the library's rule. The script computes the
-steps of a query itself, compares them with the command's counts, and ends where they differ. Needs Debian's
+The command gives the data, with two exceptions: the Python package asks the library for the pair cache of a query, and the nodes of triangle clusters
+follow from the library's rule. The script computes the steps of a query itself, and fails if the command's counts differ. It needs Debian's
 python3-matplotlib, so run it with the system's python3.
 """
 import os

@@ -1,10 +1,10 @@
-// Takes the picture of the page that README shows, the built-in jaws where they bite, with the map; or
-// the pictures of the canvas. tests/viewer/page_picture_test.mjs compares both.
+// Takes README's picture of the page, the bite of the built-in jaws with the map, or the pictures of the
+// canvas. tests/viewer/page_picture_test.mjs compares both.
 //
 //   node scripts/draw_page.mjs docs/pictures/page.png
 //   node scripts/draw_page.mjs tests/viewer/pictures
 //
-// scripts/viewer.sh makes the page and brings what is needed.
+// scripts/viewer.sh makes the page and installs its packages.
 
 import {writeFileSync} from 'node:fs';
 import path from 'node:path';
@@ -17,23 +17,19 @@ const {openView, pageDrawn, pictureOf, views} = await import('../tests/viewer/pi
 const [output] = process.argv.slice(2);
 if (output === undefined) throw new Error('name the picture, or the folder of all that tests compare: node scripts/draw_page.mjs OUTPUT');
 
-async function drawPage() {
-  const {opened, picture} = await pageDrawn(browser);
-  writeFileSync(output, picture);
-  await closePage(opened);
-}
-
-async function drawViews() {
-  for (const view of views) {
-    const opened = await openView(browser, view);
-    writeFileSync(path.join(output, `${view.name}.png`), await pictureOf(opened.page));
-    await closePage(opened);
-  }
-}
-
 const browser = await startBrowser();
 try {
-  await (output.endsWith('.png') ? drawPage() : drawViews());
+  if (output.endsWith('.png')) {
+    const {opened, picture} = await pageDrawn(browser);
+    writeFileSync(output, picture);
+    await closePage(opened);
+  } else {
+    for (const view of views) {
+      const opened = await openView(browser, view);
+      writeFileSync(path.join(output, `${view.name}.png`), await pictureOf(opened.page));
+      await closePage(opened);
+    }
+  }
 } finally {
   await browser.close();
 }

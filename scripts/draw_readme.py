@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
-"""Draws README's first screen, to the end of what its first commands print, as a picture for pages elsewhere.
+"""Draws README's first screen, to the end of the output of its first commands, as a picture for pages elsewhere.
 
     scripts/draw_readme.py [OUTPUT.png]     build/readme.png, if none is named
 
-It is a part of the site that scripts/docs.sh makes, whose README must be the one that is here; lines that are too long go on
-below. Chromium draws it (IST_CHROMIUM; by default /usr/bin/chromium). Needs Debian's python3-matplotlib for its Pillow, so run
-it with the system's python3.
+It is a part of the site that scripts/docs.sh makes of the same README. Chromium draws it (IST_CHROMIUM; by default /usr/bin/chromium). The script
+needs Debian's python3-matplotlib for its Pillow, so run it with the system's python3.
 """
 import os
 import pathlib
@@ -18,18 +17,15 @@ from PIL import Image, ImageChops
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DOCS = ROOT / "build/docs"
-WIDTH, HEIGHT, MARGIN = 1000, 2000, 24  # pixels; what is white below is cut off
+WIDTH, HEIGHT, MARGIN = 1000, 2000, 24  # pixels; the white part below is cut off
 STYLE = (f"body {{background: white; padding: {MARGIN}px}} pre, pre code {{white-space: pre-wrap !important; background: white}}"
          ".rst-content img {display: block; margin: auto; max-width: 80%}")
 
 
 def first_screen():
-    """Returns a page of README up to its first output: the first block of code that names no language."""
-    try:
-        same = (DOCS / "pages/README.md").read_bytes() == (ROOT / "README.md").read_bytes()
-    except FileNotFoundError:
-        same = False
-    if not same:
+    """Returns a page of README up to its first output, the first block of code without a language."""
+    copy = DOCS / "pages/README.md"
+    if not copy.is_file() or copy.read_bytes() != (ROOT / "README.md").read_bytes():
         sys.exit("draw_readme: the site is not of this README: run scripts/docs.sh")
     site = (DOCS / "site/index.html").read_text()
     shown = re.search(r'<h1 id="ist">.*?<pre><code>.*?</code></pre>', site, re.DOTALL)

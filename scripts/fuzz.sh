@@ -35,47 +35,26 @@ if ! cmake --build --preset fuzz --target "${targets[@]/#/fuzz_}" >build/fuzz.lo
   exit 1
 fi
 
-last() { sed -nE "s/^$1 *(.*)/\1/p" "$2" | tail -n 1; }
+# Files in memory save waits for a disk.
+memory=$(mktemp -d -p "$([ -w /dev/shm ] && echo /dev/shm || echo /tmp)")
+trap 'rm -rf "$memory"' EXIT
 
-failed=0
-jobs=$(nproc)
-memory=$(mktemp -d)  # where a write need not wait for a disk, if there is such a place
-[ -w /dev/shm ] && { rmdir "$memory"; memory=$(mktemp -d -p /dev/shm); }
-trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$memory"' EXIT
-
-begin() {  # a target's fuzzer, into its log
-  local kept=build/fuzz/corpus/$1
+fuzz() {  # a target; prints its outcome at once
+  local kept=build/fuzz/corpus/$1 log=build/fuzz/$1.log edges executions
   mkdir -p "$kept" build/fuzz/findings
-  TMPDIR=$memory UBSAN_OPTIONS=print_stacktrace=1 \
+  if TMPDIR=$memory UBSAN_OPTIONS=print_stacktrace=1 \
     "build/fuzz/tests/fuzz/fuzz_$1" -max_total_time="$seconds" -max_len=4096 -timeout=10 \
     -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="build/fuzz/findings/$1-" \
-    "$kept" "build/fuzz/tests/fuzz/corpus/$1" >"build/fuzz/$1.log" 2>&1 &
-}
-
-end() {  # a target, and its process
-  local log=build/fuzz/$1.log edges
-  if wait "$2"; then
+    "$kept" "build/fuzz/tests/fuzz/corpus/$1" >"$log" 2>&1; then
     edges=$(grep -oE 'cov: [0-9]+' "$log" | tail -n 1)
-    echo "$1: $(last 'stat::number_of_executed_units:' "$log") executions in $seconds s, ${edges#cov: } edges covered, no finding"
+    executions=$(sed -nE 's/^stat::number_of_executed_units: *(.*)/\1/p' "$log" | tail -n 1)
+    echo "$1: $executions executions in $seconds s, ${edges#cov: } edges covered, no finding"
   else
-    failed=1
-    echo "$1: A FINDING; its input is in build/fuzz/findings, the rest in $log:"
-    grep -m 1 -A 25 -E 'ERROR: |runtime error: |what\(\): ' "$log" || tail -n 25 "$log"
+    echo "$1: A FINDING; its input is in build/fuzz/findings, the rest in $log:
+$(grep -m 1 -A 25 -E 'ERROR: |runtime error: |what\(\): ' "$log" || tail -n 25 "$log")"
+    return 1
   fi
 }
-
-for ((first = 0; first < ${#targets[@]}; first += jobs)); do
-  together=("${targets[@]:first:jobs}") processes=()
-  for target in "${together[@]}"; do
-    begin "$target"
-    processes+=($!)
-  done
-  for ((second = 0; second < seconds; ++second)); do
-    kill -0 "${processes[@]}" 2>/dev/null || break
-    sleep 1
-    [ ! -t 2 ] || printf '\r\033[K%s: %d of %d s' "${together[*]}" $((second + 1)) "$seconds" >&2
-  done
-  [ ! -t 2 ] || printf '\r\033[K' >&2
-  for at in "${!together[@]}"; do end "${together[at]}" "${processes[at]}"; done
-done
-exit $failed
+export -f fuzz
+export seconds memory
+printf '%s\n' "${targets[@]}" | xargs -P "$(nproc)" -I TARGET bash -c 'fuzz TARGET' || exit 1

@@ -1,23 +1,24 @@
 #!/usr/bin/env python3
 """Builds golden_test by each supported compiler, optimisation and platform, runs it for each instruction set, and
-writes the table of hashes to docs/guarantees.md. Ends with 1, and writes nothing, where two hashes differ.
+writes the table of hashes to docs/guarantees.md. If two hashes differ, it writes nothing and ends with 1.
 
   scripts/golden_table.py           builds, runs and writes; 15 minutes on two cores
-  scripts/golden_table.py --check   ends with 1 where the table in the page is another; names the targets that this
-                                    processor lacks, which are not compared
+  scripts/golden_table.py --check   ends with 1 if the page has another table. It names the targets that this processor lacks, and
+                                    does not compare them
 
-scripts/setup.sh --tests --cross installs what it needs.
+scripts/setup.sh --tests --cross installs the compilers.
 """
 import os
 import re
-import subprocess
 import sys
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+from machine import output, refuse
+from report.figures import ROOT
+from report.tables import BLOCK, fill, markdown
+
 PAGE = ROOT / "docs/guarantees.md"
-BEGIN, END = "<!-- golden table -->\n", "<!-- end of golden table -->\n"
-STRICT = "-DIST_WERROR=ON"  # where no other test compiles
+BLOCK_NAME = "golden table"
+STRICT = "-DIST_WERROR=ON"  # for builds that no other test compiles
 GOLDEN = ["-DIST_TESTS=OFF", "-DIST_GOLDEN=ON", "-DIST_CLI=OFF", "-DIST_INSTALL=OFF", "-DIST_UNITY=ON"]
 
 
@@ -25,7 +26,7 @@ def optimised(level):
     return ["-G", "Ninja", "-DCMAKE_CXX_COMPILER=g++", "-DCMAKE_BUILD_TYPE=None", f"-DCMAKE_CXX_FLAGS={level}", *GOLDEN]
 
 
-# By what the table calls it: the folder below build/, what configures it, and the words before the program.
+# Keys are the names in the table. Values are the folder below build/, the options that configure it, and the words before the program.
 BUILDS = {
     "x86-64, g++ -O0": ("golden-O0", optimised("-O0"), []),
     "x86-64, g++ -O2": ("golden-O2", optimised("-O2"), []),
@@ -39,41 +40,28 @@ BUILDS = {
 }
 
 
-def run(*command, **keywords):
-    done = subprocess.run([str(word) for word in command], cwd=ROOT, capture_output=True, text=True, **keywords)
-    if done.returncode != 0:
-        sys.exit(f"golden_table: {' '.join(map(str, command))} ends with {done.returncode}:\n{(done.stdout + done.stderr)[-3000:]}")
-    return done.stdout
-
-
 def hashes_of(name):
-    """The hash of all golden answers, by target."""
+    """Returns the hash of all golden answers, by target."""
     folder, configure, runner = BUILDS[name]
     build = ROOT / "build" / folder
     place = [] if "--preset" in configure else ["-S", ROOT, "-B", build]
-    run("cmake", "--fresh", *place, *configure)
-    run("cmake", "--build", build, "--target", "golden_test", "--", f"-j{os.cpu_count()}")
+    output("cmake", "--fresh", *place, *configure)
+    output("cmake", "--build", build, "--target", "golden_test", "--", f"-j{os.cpu_count()}")
     program = build / ("tests/golden_test.js" if runner == ["node"] else "tests/golden_test")
-    rows = [line.split("\t") for line in run(*runner, program, "--hashes").splitlines()]
+    rows = [line.split("\t") for line in output(*runner, program, "--hashes").stdout.splitlines()]
     return {target: value for target, answers, value in rows if answers == "all"}
 
 
-ROW = re.compile(r"\| (.+?) \| (.+?) \| (.+?) \|\n")
-
-
-def line_of(name, hashes):
-    """A row of the table."""
-    return f"| {name} | {', '.join(f'`{target}`' for target in hashes)} | {', '.join(f'`{value}`' for value in dict.fromkeys(hashes.values()))} |\n"
+ROW = re.compile(r"\| (.+?) \| (`.+?`) \| (`.+?`) \|\n")
 
 
 def rows_of(text):
-    """The targets and the hashes of a table, by build."""
-    words = re.compile("`([^`]*)`")
-    return {name: (words.findall(targets), words.findall(hashes)) for name, targets, hashes in ROW.findall(text)[1:] if "`" in hashes}
+    """Returns the targets and the hashes of a table, by build."""
+    return {name: (re.findall("`([^`]*)`", targets), re.findall("`([^`]*)`", hashes)) for name, targets, hashes in ROW.findall(text)}
 
 
 def made_here():
-    """The hashes by build and target. Ends the program where two differ."""
+    """Returns the hashes by build and target. Ends the program if two differ."""
     made, seen = {}, {}
     for name in BUILDS:
         print(name, flush=True)
@@ -86,7 +74,7 @@ def made_here():
 
 
 def compared(shown, made):
-    """The ways in which a page's table differs from what was made here, and the builds with the targets that this processor lacks."""
+    """Returns how a page's table differs from the hashes that were made here, and the builds with the targets that this processor lacks."""
     wrong, absent = [], {}
     for name in {**shown, **made}:
         if name not in shown or name not in made:
@@ -104,24 +92,19 @@ def compared(shown, made):
 
 def main():
     check = sys.argv[1:] == ["--check"]
-    if sys.argv[1:] and not check:
-        print(__doc__.strip())
-        sys.exit(0 if sys.argv[1:] in (["-h"], ["--help"]) else 2)
-    page = PAGE.read_text()
-    before, _, rest = page.partition(BEGIN)
-    shown, end, after = rest.partition(END)
-    if not end:
-        sys.exit(f"golden_table: {PAGE} has no place for the table: {BEGIN.strip()}")
+    refuse([] if check else sys.argv[1:], __doc__)
     made = made_here()
+    shown = next((block[0] for block in BLOCK.finditer(PAGE.read_text()) if block[2] == BLOCK_NAME), "")
     wrong, absent = compared(rows_of(shown), made)
     for name, targets in absent.items():
         print(f"{name}: this processor has no {', '.join(targets)}: not compared")
     if check:
         sys.exit("golden_table: " + "; ".join(wrong) + ": run scripts/golden_table.py" if wrong else 0)
     if absent:
-        sys.exit("golden_table: the page keeps its table, which has more targets: run this where all of them are")
-    lines = "".join(line_of(name, hashes) for name, hashes in made.items())
-    PAGE.write_text(before + BEGIN + "| build | targets | hash of all golden answers |\n|---|---|---|\n" + lines + END + after)
+        sys.exit("golden_table: the page keeps its table, which has more targets: run this on a processor that has all of them")
+    rows = [[name, *(", ".join(f"`{word}`" for word in dict.fromkeys(words)) for words in (hashes, hashes.values()))]
+            for name, hashes in made.items()]
+    fill(PAGE, BLOCK_NAME, "\n".join(markdown(["build", "targets", "hash of all golden answers"], rows)))
 
 
 if __name__ == "__main__":

@@ -1,23 +1,21 @@
 #!/usr/bin/python3
-"""Makes perf/HARDWARE.md: what the circuit of src/hardware takes on two FPGAs, by yosys, how often it calls a near miss a hit, and,
-on paper, what rate it would give where a tick asks most. Counts along a closing are kept in
-perf/results/<machine>/hardware_bench.json and made where they are missing. Some 3 minutes once built.
+"""Makes perf/HARDWARE.md: the size of the circuit of src/hardware on two FPGAs, by yosys, how often it calls a near miss a hit, and, on paper, its
+rate in the worst tick. perf/results/<machine>/hardware_bench.json keeps the counts along a closing. Some 3 minutes once built.
 
-    scripts/hardware_report.py            counts if need be, synthesises
+    scripts/hardware_report.py            counts if the counts are missing, synthesises
     scripts/hardware_report.py --fresh    counts again
 
-The clock is known only where nextpnr-ice40 is installed, a package of its own; else the report says so.
+nextpnr-ice40, a package of its own, measures the clock. Without it the report says that the clock is not measured.
 
-    IST_DATA_DIR=FOLDER    where the real jaws are, by default ../shared/data; else the built-in ones"""
+    IST_DATA_DIR=FOLDER    the folder of the real jaws, by default ../shared/data; without it the built-in jaws are used"""
 
 import json
 import pathlib
 import re
 import shutil
-import subprocess
 import sys
 
-from machine import build, machine, refuse, run
+from machine import build, machine, output, refuse, run
 from report.figures import here, stamp
 from report.runner import Runner
 from report.tables import fill, markdown
@@ -27,7 +25,7 @@ ICE40, ECP5 = ("iCE40 UP5K", 5280, 8, 30), ("ECP5 LFE5U-25F", 24288, 28, 56)
 
 
 def cells(file):
-    """Returns the cells of a netlist by type. The text that yosys 0.23 writes round them is no valid JSON."""
+    """Returns the cells of a netlist by type. yosys 0.23 writes them into a text that is not valid JSON."""
     text = file.read_text()
     return json.JSONDecoder().raw_decode(text, text.index("{", text.index('"num_cells_by_type"')))[0]
 
@@ -57,7 +55,7 @@ def lines(made):
             for (name, luts, multipliers, blocks), counts, lut, flip_flop, multiplier, memory, clock in (
                 (ICE40, ice40, total(ice40, "SB_LUT4"), "SB_DFF.*", "SB_MAC16", "SB_RAM40_4K", placed(made)),
                 (ECP5, ecp5, total(ecp5, "LUT4") + 2 * total(ecp5, "CCU2C"), "TRELLIS_FF", "MULT18X18D", "DP16KD", "not measured"))]
-    version = subprocess.run(["yosys", "-V"], capture_output=True, text=True, check=True).stdout.split(" (")[0]
+    version = output("yosys", "-V").stdout.split(" (")[0]
     return [*markdown(["part", "4-input LUTs", "flip-flops", "multipliers", "memory blocks", "clock"], rows), "",
             stamp(*here(), "hardware_report.py", f"Synthesised by {version}.")]
 

@@ -34,8 +34,7 @@ def machine():
     kind = f" (family {family}, model {number('model' + chr(9))})" if family else ""
     commit, cores = here()[0], len(os.sched_getaffinity(0))
     folder = pathlib.Path("perf/results", re.sub("[^A-Za-z0-9]+", "-", model).rstrip("-") + f"-{cores}")
-    return Machine(model, compiler, commit, folder,
-                   [f"processor={model}{kind}", f"compiler={compiler}", f"flags={flags}", f"commit={commit}"])
+    return Machine(model, compiler, commit, folder, [f"processor={model}{kind}", f"compiler={compiler}", f"flags={flags}", f"commit={commit}"])
 
 
 def run(*command, **options):
@@ -45,24 +44,22 @@ def run(*command, **options):
         sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {' '.join(map(str, command))} ends with {done.returncode}")
 
 
+def output(*command):
+    """Returns a finished command, with its `stdout` and `stderr`. Ends the program if the command fails."""
+    done = subprocess.run([str(word) for word in command], cwd=ROOT, capture_output=True, text=True)
+    if done.returncode != 0:
+        said = (done.stdout + done.stderr)[-3000:]
+        sys.exit(f"{pathlib.Path(sys.argv[0]).stem}: {' '.join(map(str, command))} ends with {done.returncode}:\n{said}")
+    return done
+
+
 def build(preset, *targets, needs):
-    """Installs the packages that scripts/setup.sh has for `needs`, and builds targets of a preset, or all. Results are named from the
-    project's folder on."""
+    """Installs the packages of scripts/setup.sh for `needs`, and builds targets of a preset, or all targets. Makes the project's folder the
+    current one."""
     os.chdir(ROOT)
     run("scripts/setup.sh", *needs)
     run("cmake", "--preset", preset)
     run("cmake", "--build", "--preset", preset, *(["--target", *targets] if targets else []))
-
-
-def pyplot():
-    """Returns matplotlib's pyplot, which writes SVG with the same bytes each time. build() has installed it."""
-    import matplotlib
-
-    matplotlib.use("svg")
-    import matplotlib.pyplot as plt  # after the backend is chosen
-
-    plt.rcParams.update({"svg.hashsalt": "ist", "svg.fonttype": "none"})
-    return plt
 
 
 def refuse(words, doc):

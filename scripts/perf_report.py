@@ -1,20 +1,17 @@
 #!/usr/bin/python3
-"""Makes the tables of perf/REPORT.md and of the closing in docs/performance.md, and the plots, from raw results in
-perf/results/<machine>/. The text of the pages is written by hand. Without the real jaws the pages go to build/report, as with
---quick. The script runs the benchmarks that have no results of this code, so it goes on after an interruption. Results of an
-earlier commit count if no source of theirs has changed. Results of changes that no commit holds do not count. It takes some half
-an hour on two cores that have nothing else to do, and 5 minutes to build.
+"""Makes the tables of perf/REPORT.md and of the closing in docs/performance.md, and the plots, from raw results in perf/results/<machine>/. People
+write the text of the pages. Without the real jaws the pages go to build/report, as with --quick. The script runs the benchmarks that lack results of
+this code, so it goes on after an interruption. Results of an earlier commit count if their sources have not changed. Results of code that no commit
+holds do not count. It takes some half an hour on two idle cores, and 5 minutes to build.
 
-    scripts/perf_report.py            runs what has no results of this code
+    scripts/perf_report.py            runs the programs that lack results of this code
     scripts/perf_report.py --fresh    runs all again
     scripts/perf_report.py --fill     makes the tables from the results as they are, and runs nothing
-    scripts/perf_report.py --quick    shows that all of it runs, in 3 minutes once built: few rounds,
-                                      large voxels; everything goes to build/report instead
+    scripts/perf_report.py --quick    shows that all of it runs, in 3 minutes once built: few rounds, large voxels; all files go to build/report
 
-    IST_DATA_DIR=FOLDER    where the real jaws are, by default ../shared/data; else the built-in ones
+    IST_DATA_DIR=FOLDER    the folder of the real jaws, by default ../shared/data; without it the built-in jaws are used
 
-A page holds its text. Between `<!-- NAME table -->` and `<!-- end of NAME table -->` stand the lines that the results of NAME
-give."""
+A table of a page stands between `<!-- NAME table -->` and `<!-- end of NAME table -->`."""
 
 import re
 import sys
@@ -46,8 +43,7 @@ def lines_of(name, results):
 
 
 def filled(text, results):
-    """A page with its tables made anew, and the name of the results. A block stays as it is if its program has no results, or if another
-    script makes it."""
+    """Returns a page with new tables and the name of the results. A block stays if its program lacks results, or if another script makes it."""
     known = {f"{name} table" for name, table in TABLES.items() if results.made(table.program)} | {"instructions table"}
     if all(map(results.made, PROGRAMS)):
         known.add("made with table")

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the wheel and the sdist of the Python package; scripts/setup.sh --python installs what it takes.
+# Makes the wheel and the sdist of the Python package; scripts/setup.sh --python installs the tools.
 #
 #   scripts/python_packages.sh                        into build/python
 #   scripts/python_packages.sh --build FOLDER [-D…]   into another build folder, with options for CMake

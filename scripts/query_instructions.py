@@ -1,14 +1,12 @@
 #!/usr/bin/python3
-"""Counts the instructions of ten fixed queries, and of ticks of two scenes with one fixed body, with callgrind, and compares them
-with those that perf/query_instructions.json keeps: a count that is over 1 % more or less fails. Counts do not depend on load, so
-this notices what no clock would.
+"""Counts the instructions of ten fixed queries, and of ticks of two scenes with one fixed body, with callgrind, and compares them with those that
+perf/query_instructions.json keeps. A count that differs by over 1 % fails. Counts do not depend on load, so this notices changes that no clock would.
 
-Counted is what the tests run on, preset test with its assertions, one worker on AVX2. Where compiler or flags are not those of
-the counts that are kept, or valgrind or AVX2 is missing, nothing can be compared: that is said, and the exit code is 77; with
-IST_REQUIRE_ALL=1 it is 1.
+The program is built like the tests, by preset test with its assertions, and uses one worker on AVX2. The counts cannot be compared if compiler or
+flags differ, or if valgrind or AVX2 is missing. The exit code is then 77; with IST_REQUIRE_ALL=1 it is 1.
 
-    scripts/query_instructions.py                    builds, counts and compares, as ctest does
-    scripts/query_instructions.py --update           keeps the new counts, and tells what has changed
+    scripts/query_instructions.py                    builds, counts and compares, like ctest
+    scripts/query_instructions.py --update           keeps the new counts, and shows the changes
     scripts/query_instructions.py --program FILE     counts a program that is built already"""
 
 import argparse
@@ -28,7 +26,7 @@ SKIPPED = 77
 
 
 class NotComparable(Exception):
-    """Raised where there is nothing to compare, which is no failure."""
+    """Raised if the counts cannot be compared. That is not a failure."""
 
 
 def run(program, folder):
@@ -49,24 +47,18 @@ def run(program, folder):
 
 
 def counts_in(folder):
-    """Instructions by query, from the files that callgrind left."""
-    counts = {}
-    for file in pathlib.Path(folder).glob("out.*"):
-        text = file.read_text()
-        name = re.search(r"^desc: Trigger: Client Request: (.+)$", text, re.MULTILINE)
-        total = re.search(r"^totals: (\d+)$", text, re.MULTILINE)
-        if name and total:
-            counts[name.group(1)] = int(total.group(1))
-    return counts
+    """Returns the instructions by query, from the files that callgrind left."""
+    query = re.compile(r"^desc: Trigger: Client Request: (.+)$[\s\S]*^totals: (\d+)$", re.MULTILINE)
+    found = (query.search(file.read_text()) for file in pathlib.Path(folder).glob("out.*"))
+    return {each[1]: int(each[2]) for each in found if each}
 
 
 def join(printed, counts):
     """Returns the record of one run: compiler and flags, and the counts of each query."""
     context, queries = {}, []
     for line in printed.splitlines():
-        if re.match(r"(compiler|flags|ticks): ", line):
-            key, value = line.split(": ", 1)
-            context[key] = value
+        if told := re.match(r"(compiler|flags|ticks): (.*)", line):
+            context[told[1]] = told[2]
             continue
         name, found, tests = line.split()
         if counts.get(name, 0) < 1000:
@@ -77,23 +69,14 @@ def join(printed, counts):
 
 def count(program):
     with tempfile.TemporaryDirectory() as folder:
-        printed = run(program, folder)
-        return join(printed, counts_in(folder))
-
-
-def require_comparable(kept, new):
-    for key, value in kept["context"].items():
-        if new["context"][key] != value:
-            raise NotComparable(f"the {key} of the counts that are kept: {value}\nthe {key} here: "
-                                f"{new['context'][key]}")
+        return join(run(program, folder), counts_in(folder))
 
 
 def compare(kept, new):
     """Returns a line per query, and the number of queries beyond the limit, with another answer, or on one side only."""
-    before = {query["name"]: query for query in kept["queries"]}
-    after = {query["name"]: query for query in new["queries"]}
+    before, after = ({query["name"]: query for query in side["queries"]} for side in (kept, new))
     lines, beyond = [], 0
-    for name in list(before) + [name for name in after if name not in before]:
+    for name in before | after:
         if name not in before or name not in after:
             beyond += 1
             lines.append(f"{name:<34} is only {'here' if name in after else 'among the counts that are kept'}")
@@ -117,8 +100,9 @@ def main(program, baseline, update=False):
         kept = json.loads(baseline.read_text()) if baseline.exists() else None
         if kept is None and not update:
             raise NotComparable(f"{baseline} is not there: --update makes it")
-        if not update:
-            require_comparable(kept, new)
+        for key, value in () if update else kept["context"].items():
+            if new["context"][key] != value:
+                raise NotComparable(f"the {key} of the counts that are kept: {value}\nthe {key} here: {new['context'][key]}")
     except NotComparable as reason:
         print(f"query_instructions: nothing to compare: {reason}", file=sys.stderr)
         return 1 if os.environ.get("IST_REQUIRE_ALL") == "1" else SKIPPED

@@ -5,11 +5,10 @@
                                 cmake --preset bench && cmake --build --preset bench --target fixed_loop
 """
 import os
-import pathlib
 import re
-import subprocess
 import sys
 
+from machine import machine, output, refuse
 from report.figures import ROOT, here, machine_state, stamp
 from report.runner import fixed_loop
 from report.tables import fill
@@ -19,31 +18,24 @@ MOST_LOAD = 0.5  # cores that other work may take
 
 
 def main():
+    refuse(sys.argv[1:], __doc__)
     os.chdir(ROOT)
     commit, date = here()
     if commit.endswith("+"):
         sys.exit("readme_bench: the code differs from its commit: commit it first, so that the figures name what they are of")
-    said = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout
-    built = re.search(r"commit (\S+)", said).group(1)
+    built = re.search(r"commit (\S+)", output(PROGRAM, "--version").stdout)[1]
     if not built.startswith(commit) or built.endswith("+"):
         sys.exit(f"readme_bench: {PROGRAM} was built at {built}, and this is {commit}: cmake --build --preset release")
-    processor = re.search(r"^model name[^:]*: (.*)", pathlib.Path("/proc/cpuinfo").read_text(), re.M)
-    context = {"processor": processor.group(1) if processor else os.uname().machine, "load_avg": os.getloadavg(), "loop_before": fixed_loop()}
+    context = {"processor": machine().model, "load_avg": os.getloadavg(), "loop_before": fixed_loop()}
     if context["load_avg"][0] > MOST_LOAD:
         sys.exit(f"readme_bench: other work took {context['load_avg'][0]:.1f} cores: wait until nothing else runs")
-    done = subprocess.run([PROGRAM, "bench"], capture_output=True, text=True)
-    if done.returncode != 0:
-        sys.exit(f"readme_bench: ist bench: {done.stderr}")
+    printed = output(PROGRAM, "bench").stdout
     context |= {"load_after": os.getloadavg()[0], "loop_after": fixed_loop()}
     note = "<!-- snippet: output varies, since it is times -->\n"
-    text = (f"{note}```sh\nist bench\n```\n\n{note}```\n{done.stdout}```\n\n"
-            f"{stamp(commit, date, 'ist bench', machine_state(context))}")
+    text = (f"{note}```sh\nist bench\n```\n\n{note}```\n{printed}```\n\n{stamp(commit, date, 'ist bench', machine_state(context))}")
     fill(ROOT / "README.md", "ist bench", text)
     print("README.md", file=sys.stderr)
 
 
 if __name__ == "__main__":
-    if sys.argv[1:]:
-        print(__doc__.strip())
-        sys.exit(0 if sys.argv[1] in ("-h", "--help") else 2)
     main()

@@ -1,18 +1,17 @@
 #!/usr/bin/env bash
-# Makes the folder of a release from the last commit: an archive of the sources, Debian packages, the wheel and the sdist of
-# the Python package, the page, the site of the documents, THIRD_PARTY with the notices of what others wrote, and SHA256SUMS.
-# All of it is built from that archive, twice, in different folders; where a byte differs, the file is named and nothing is made.
+# Makes the folder of a release from the last commit: an archive of the sources, Debian packages, the wheel and the sdist of the Python package,
+# the page, the site of the documents, THIRD_PARTY with the notices of others, and SHA256SUMS. All files are built from that archive,
+# twice, in different folders. If a byte differs, the script names the file and makes nothing.
 #
 #   scripts/release.sh                     into build/ist-VERSION
-#   scripts/release.sh --out FOLDER        into another folder, which is not there yet
-#   scripts/release.sh --once              a draft, in FOLDER-draft: built once, in half the time, and so nothing shows that the
-#                                          bytes are the same elsewhere
-#   scripts/release.sh --despite-figures   a draft, too: made even if figures are older than their code, or a long
-#                                          test has not passed at the commit (scripts/check_figures.sh, scripts/test.sh --left)
+#   scripts/release.sh --out FOLDER        into another folder, which does not exist yet
+#   scripts/release.sh --once              a draft, in FOLDER-draft: built once, in half the time, so nothing shows that another build has the same bytes
+#   scripts/release.sh --despite-figures   a draft, too: made even if figures are older than their code, or a long test has not passed at the commit
+#                                          (scripts/check_figures.sh, scripts/test.sh --left)
 #   scripts/release.sh -DIST_MAINTAINER='Name <address>' -DIST_HOMEPAGE=https://…
-#                                          whom the packages name; without them "IST developers", and no page
+#                                          the contact of the packages; without them "IST developers", and no page
 #
-# Exit codes: 1 where something is stale, missing or different, 2 for a wrong option.
+# Exit codes: 1 if a part is stale, missing or different, 2 for a wrong option.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 say() { echo "release: $*"; }
@@ -25,7 +24,7 @@ while [ $# -gt 0 ]; do
     --once) twice=false ;;
     --despite-figures) despite=true ;;
     -DIST_MAINTAINER=?* | -DIST_HOMEPAGE=?*) contact+=("$1") ;;
-    -h | --help) sed -n '2,15s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "release: unknown option $1; see --help" >&2; exit 2 ;;
   esac
   shift
@@ -65,9 +64,9 @@ keep() {
 }
 trap keep EXIT
 umask 022
-# What a user has set for other builds would be built in.
+# Settings of a user for other builds would become part of the release.
 unset CC CXX CFLAGS CXXFLAGS CPPFLAGS LDFLAGS CPATH C_INCLUDE_PATH CPLUS_INCLUDE_PATH LIBRARY_PATH CMAKE_GENERATOR CMAKE_BUILD_TYPE CMAKE_CXX_COMPILER_LAUNCHER CMAKE_C_COMPILER_LAUNCHER
-# A cache of objects would show in the second build what the first one has made.
+# With a cache of objects, the second build would take objects of the first one.
 export CCACHE_DISABLE=1 LC_ALL=C.UTF-8 TZ=UTC
 SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
 export SOURCE_DATE_EPOCH

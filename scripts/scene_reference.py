@@ -2,19 +2,18 @@
 """Writes values, units and defaults into the tables of docs/scene-reference.md, as the reader of scenes has them.
 
     scripts/scene_reference.py build/test/tests/docs/scene_keys           writes the page
-    scripts/scene_reference.py build/test/tests/docs/scene_keys --check   fails where the page would change
+    scripts/scene_reference.py build/test/tests/docs/scene_keys --check   fails if the page would change
 
-The page's rows say what a key means. A row of a key that the reader does not ask for is an error, and so is a key without a
-row.
+The rows of the page explain the keys. Each key of the reader must have a row, and other rows are errors.
 """
 
 import json
-import pathlib
 import re
-import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+from machine import output
+from report.figures import ROOT
+
 PAGE = ROOT / "docs/scene-reference.md"
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 # Read as tables of their own.
@@ -22,13 +21,12 @@ TABLES = {"fixed", "held", "device", "safety", "coupling", "effects"}
 
 
 def power(match):
-    """Powers of ten as people write them: from 10000 up, and below 0.001."""
+    """Returns a power of ten with a raised exponent, from 10000 up and below 0.001, and other numbers as they are."""
     value = float(match[0])
-    exponent = f"{value:.0e}".split("e")
-    short = exponent[0] in ("1", "-1") and float(f"{value:.0e}") == value
-    if not short or 1e-3 <= abs(value) < 1e4:
+    digit, exponent = f"{value:.0e}".split("e")
+    if digit not in ("1", "-1") or float(f"{value:.0e}") != value or 1e-3 <= abs(value) < 1e4:
         return match[0]
-    return exponent[0].replace("1", "10") + str(int(exponent[1])).translate(RAISED)
+    return f"{digit}0{str(int(exponent)).translate(RAISED)}"
 
 
 def readable(text):
@@ -36,11 +34,9 @@ def readable(text):
 
 
 def read_keys(program):
-    """By path; the two bodies have the same keys."""
-    scenes = sorted((ROOT / "tests/docs/scenes").glob("*.toml"))
-    listed = subprocess.run([program, *scenes], capture_output=True, text=True, check=True).stdout
+    """Returns the keys by path. Both bodies have the same keys."""
     keys = {}
-    for line in map(json.loads, listed.splitlines()):
+    for line in map(json.loads, output(program, *sorted((ROOT / "tests/docs/scenes").glob("*.toml"))).stdout.splitlines()):
         path = re.sub(r"^(fixed|held)\.", "body.", line["path"])
         known = keys.setdefault(path, line)
         if not known["values"]:

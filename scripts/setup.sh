@@ -30,49 +30,43 @@ packages=(g++ cmake ninja-build pkg-config
   libeigen3-dev libtbb-dev libhwy-dev libfmt-dev libxxhash-dev libtomlplusplus-dev zlib1g-dev
   libcli11-dev nlohmann-json3-dev libpng-dev help2man
   libassimp-dev libzip-dev libpugixml-dev libseccomp-dev)
-tests=(libgtest-dev libgmp-dev python3 python3-numpy locales git dpkg-dev)
-bench=(libbenchmark-dev python3-matplotlib)
-cross=(clang-14 clang-16 emscripten googletest g++-aarch64-linux-gnu qemu-user
-  libtbb-dev:arm64 libhwy-dev:arm64 libfmt-dev:arm64 libxxhash-dev:arm64 libtomlplusplus-dev:arm64
-  zlib1g-dev:arm64 libpng-dev:arm64 libgtest-dev:arm64)
-arguments=()
-for argument in "$@"; do
-  case $argument in
-    --all) arguments+=(--tests --oracles --python --sweep --docs --viewer --hardware --package --style) ;;
-    *) arguments+=("$argument") ;;
-  esac
-done
-for argument in "${arguments[@]}"; do
-  case $argument in
-    --tests) packages+=("${tests[@]}") ;;
-    --style) packages+=(clang-format flake8) ;;
-    --lint) packages+=(clang-format flake8 clang-tidy-14 pre-commit) ;;
-    --bench) packages+=("${bench[@]}") ;;
-    --peers) packages+=("${bench[@]}" libfcl-dev libembree-dev
-      libbullet-dev libcgal-dev libopenvdb-dev) ;;
-    --fuzz) packages+=(clang-14 libclang-rt-14-dev llvm-14) ;;
-    --hardware) packages+=(iverilog verilator ghdl yosys) ;;
-    --oracles) packages+=(python3-numpy python3-vtk9 python3-meshio) ;;
-    --python) packages+=(python3-numpy python3-setuptools python3-wheel python3-build python3-venv python3-pip
-      mypy python3-matplotlib python3-meshio python3-vtk9) ;;
-    --sweep) packages+=(python3-numpy python3-dask python3-distributed parallel) ;;
-    --slurm) packages+=(slurm-wlm munge) ;;
-    --docs) packages+=(doxygen mkdocs) ;;
-    --package) packages+=(man-db mandoc lintian binutils dpkg-dev file clang-14 valgrind) ;;
-    --cloudcompare) packages+=(cloudcompare) ;;
-    --blender) packages+=(blender) ;;
-    --doors) packages+=(debootstrap git python3-numpy python3-vtk9 python3-venv python3-pip python3-setuptools python3-wheel
-      python3-build python3-dask python3-distributed libfcl-dev libembree-dev libbenchmark-dev) ;;
-    --viewer)
-      packages+=(emscripten googletest chromium)
-      command -v node >/dev/null || packages+=(nodejs)
-      command -v npm >/dev/null || packages+=(npm)
-      viewer=true
-      ;;
-    --cross) packages+=("${cross[@]}") ;;
-    -h | --help) sed -n '2,28s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;
-  esac
+bench="libbenchmark-dev python3-matplotlib"
+declare -A tasks=(
+  [--tests]="libgtest-dev libgmp-dev python3 python3-numpy locales git dpkg-dev"
+  [--style]="clang-format flake8"
+  [--lint]="clang-format flake8 clang-tidy-14 pre-commit"
+  [--bench]=$bench
+  [--peers]="$bench libfcl-dev libembree-dev libbullet-dev libcgal-dev libopenvdb-dev"
+  [--fuzz]="clang-14 libclang-rt-14-dev llvm-14"
+  [--hardware]="iverilog verilator ghdl yosys"
+  [--oracles]="python3-numpy python3-vtk9 python3-meshio"
+  [--python]="python3-numpy python3-setuptools python3-wheel python3-build python3-venv python3-pip mypy python3-matplotlib python3-meshio python3-vtk9"
+  [--sweep]="python3-numpy python3-dask python3-distributed parallel"
+  [--slurm]="slurm-wlm munge"
+  [--docs]="doxygen mkdocs"
+  [--package]="man-db mandoc lintian binutils dpkg-dev file clang-14 valgrind"
+  [--cloudcompare]=cloudcompare
+  [--blender]=blender
+  [--doors]="debootstrap git python3-numpy python3-vtk9 python3-venv python3-pip python3-setuptools python3-wheel python3-build python3-dask
+    python3-distributed libfcl-dev libembree-dev libbenchmark-dev"
+  [--viewer]="emscripten googletest chromium"
+  [--cross]="clang-14 clang-16 emscripten googletest g++-aarch64-linux-gnu qemu-user libtbb-dev:arm64 libhwy-dev:arm64 libfmt-dev:arm64
+    libxxhash-dev:arm64 libtomlplusplus-dev:arm64 zlib1g-dev:arm64 libpng-dev:arm64 libgtest-dev:arm64"
+)
+for argument in "${@/#--all/--tests --oracles --python --sweep --docs --viewer --hardware --package --style}"; do
+  for task in ${argument:-none}; do
+    case $task in
+      -h | --help) sed -n '2,28s/^# \{0,1\}//p' "$0"; exit 0 ;;
+      --viewer)
+        viewer=true
+        command -v node >/dev/null || packages+=(nodejs)
+        command -v npm >/dev/null || packages+=(npm)
+        ;;
+    esac
+    [ -n "${tasks[$task]:-}" ] || { echo "setup: unknown option $argument; see --help" >&2; exit 2; }
+    # shellcheck disable=SC2206  # words
+    packages+=(${tasks[$task]})
+  done
 done
 
 # A package may be installed for several architectures.

@@ -1,43 +1,33 @@
 #!/usr/bin/python3
-"""Makes perf/HAPTIC_STABILITY.md and its plot: presses walls with stiffer and stiffer couplings, and shows what energy comes back
-and from which stiffness on, beside the border that the loop computes. Nothing is timed. Some two minutes on one core, once built.
+"""Makes perf/HAPTIC_STABILITY.md and its plot: presses walls with stiffer and stiffer couplings, and shows the energy that comes back
+and the stiffness at which that begins, beside the border that the loop computes. It times nothing. Some two minutes on one core, once built.
 
     scripts/stability_border.py"""
 import collections
-import datetime
 import json
 import subprocess
 import sys
 
-from machine import build, machine, pyplot, refuse
-from report.figures import ROOT, stamp
-from report.tables import fill
+from machine import build, machine, refuse
+from report.draw import pyplot
+from report.figures import ROOT, here, stamp
+from report.tables import fill, markdown
 
 PAGE = ROOT / "perf/HAPTIC_STABILITY.md"
 USED = 0.8  # of the computed border: what clamp_coupling() leaves
-HIGHEST = 4  # times the computed border: where measured_border() ends its search
+HIGHEST = 4  # times the computed border: measured_border() searches up to there
 UNITS = {"push": ("N/m", "N s/m"), "turn": ("N m/rad", "N m s/rad")}
-
-
-def grouped(lines):
-    """Presses and borders by wall, delay and rate, in the order of the sweep."""
-    groups = collections.defaultdict(lambda: ([], []))
-    for line in lines:
-        groups[line["wall"], line["delay"], line["rate"]]["measured" in line].append(line)
-    return groups
 
 
 def panel(axes, key, presses, borders, norm):
     wall, delay, rate = key
     stiffness, damping = UNITS[wall]
-    drawn = axes.scatter(
-        [p["damping"] for p in presses], [p["stiffness"] for p in presses], s=26, cmap="RdBu_r", norm=norm,
-        c=[1e6 * p["returned"] for p in presses], edgecolors="0.5", linewidths=0.3)
+    drawn = axes.scatter([p["damping"] for p in presses], [p["stiffness"] for p in presses], s=26, cmap="RdBu_r", norm=norm,
+                         c=[1e6 * p["returned"] for p in presses], edgecolors="0.5", linewidths=0.3)
     dampings = [b["damping"] for b in borders]
     axes.plot(dampings, [b["computed"] for b in borders], "k-", linewidth=1, label="computed border")
     axes.plot(dampings, [USED * b["computed"] for b in borders], "k--", linewidth=1, label="80 %, used")
-    axes.plot(dampings, [b["measured"] for b in borders], "x", color="tab:green", markersize=7,
-              markeredgewidth=1.6, label="measured border")
+    axes.plot(dampings, [b["measured"] for b in borders], "x", color="tab:green", markersize=7, markeredgewidth=1.6, label="measured border")
     axes.set_yscale("log")
     axes.set_title(f"{wall}, {rate:g} Hz, delay {1e3 * delay:g} ms", fontsize=8)
     axes.set_xlabel(f"device damping, {damping}", fontsize=7)
@@ -50,8 +40,7 @@ def plot(groups, file):
     rates = sorted({key[2] for key in groups})
     rows = list(dict.fromkeys(key[:2] for key in groups))
     plt = pyplot()
-    figure, axes = plt.subplots(len(rows), len(rates), figsize=(10, 2.6 * len(rows)), squeeze=False,
-                                layout="constrained")
+    figure, axes = plt.subplots(len(rows), len(rates), figsize=(10, 2.6 * len(rows)), squeeze=False, layout="constrained")
     norm = plt.matplotlib.colors.SymLogNorm(linthresh=10, vmin=-1e4, vmax=1e4)
     for key, (presses, borders) in groups.items():
         drawn = panel(axes[rows.index(key[:2])][rates.index(key[2])], key, presses, borders, norm)
@@ -61,10 +50,8 @@ def plot(groups, file):
 
 
 def table(groups):
-    """Returns a line per group, the number of presses within the part used, and how many of these exceed their allowance."""
-    lines = ["| wall | rate, Hz | delay, ms | presses | within 80 %: worst returned / allowance, µJ | "
-             "grows from | measured / computed |", "|---|--:|--:|--:|--:|--:|--:|"]
-    used = broken = 0
+    """Returns the lines of the table, the number of presses within the part used, and how many of these exceed their allowance."""
+    rows, used, broken = [], 0, 0
     for (wall, delay, rate), (presses, borders) in groups.items():
         inside = [p for p in presses if p["stiffness"] <= (USED + 1e-9) * p["computed"]]
         used += len(inside)
@@ -73,25 +60,27 @@ def table(groups):
         growing = min(p["stiffness"] / p["computed"] for p in presses if p["growth"] > 1)
         ratios = [b["measured"] / b["computed"] for b in borders]
         most = "none found" if max(ratios) >= 0.99 * HIGHEST else f"{max(ratios):.2f}"
-        lines.append(f"| {wall} | {rate:g} | {1e3 * delay:g} | {len(presses)} | "
-                     f"{1e6 * worst['returned']:.1f} / {1e6 * worst['allowance']:.1f} | {growing:.2f} | "
-                     f"{min(ratios):.2f} to {most} |")
-    return lines, used, broken
+        rows.append([wall, f"{rate:g}", f"{1e3 * delay:g}", str(len(presses)),
+                     f"{1e6 * worst['returned']:.1f} / {1e6 * worst['allowance']:.1f}", f"{growing:.2f}", f"{min(ratios):.2f} to {most}"])
+    return markdown(["wall", "rate, Hz", "delay, ms", "presses", "within 80 %: worst returned / allowance, µJ", "grows from",
+                     "measured / computed"], rows, right=range(1, 7)), used, broken
 
 
 def main():
     refuse(sys.argv[1:], __doc__)
     build("bench", "stability_border", needs=["--bench"])
-    here = machine()
-    here.results.mkdir(parents=True, exist_ok=True)
+    on = machine()
+    on.results.mkdir(parents=True, exist_ok=True)
     lines = subprocess.run(["build/bench/bench/stability_border"], check=True, stdout=subprocess.PIPE, text=True).stdout
-    (here.results / "stability_border.jsonl").write_text(lines)
-    groups = grouped(map(json.loads, lines.splitlines()))
+    (on.results / "stability_border.jsonl").write_text(lines)
+    groups = collections.defaultdict(lambda: ([], []))  # presses and borders by wall, delay and rate, in the order of the sweep
+    for line in map(json.loads, lines.splitlines()):
+        groups[line["wall"], line["delay"], line["rate"]]["measured" in line].append(line)
     plot(groups, PAGE.parent / "pictures/stability_border.svg")
     rows, used, broken = table(groups)
-    text = (f"{here.model}; {here.compiler}; commit {here.commit}. {sum(len(p) for p, _ in groups.values())} presses; of the {used} within "
+    text = (f"{on.model}; {on.compiler}; commit {on.commit}. {sum(len(p) for p, _ in groups.values())} presses; of the {used} within "
             f"{100 * USED:.0f} % of the border, the part that the loop uses, {broken} returned more than their allowance.")
-    fill(PAGE, "presses", "\n".join([text, "", *rows, "", stamp(here.commit, datetime.date.today().isoformat(), "stability_border.py")]))
+    fill(PAGE, "presses", "\n".join([text, "", *rows, "", stamp(*here(), "stability_border.py")]))
     if broken:
         sys.exit(f"stability_border: {broken} presses within the part used returned more than their allowance")
 

@@ -1,11 +1,10 @@
 #!/usr/bin/python3
 """Makes perf/STABILITY.md: tries the hard cases many more times than a run of all tests does, and shows the worst error of each
-beside what is guaranteed. Some 20 minutes on two cores.
+beside the guarantee. Some 20 minutes on two cores.
 
     scripts/stability_report.py                10 million queries of real jaws, 20 times the other samples
     scripts/stability_report.py --quick        as many as in a run of all tests, written to build/stability
     scripts/stability_report.py --out FOLDER   written there instead of perf/"""
-import datetime
 import json
 import math
 import os
@@ -14,9 +13,10 @@ import shutil
 import subprocess
 import sys
 
-from machine import build, machine, pyplot, refuse
-from report.figures import ROOT, stamp
-from report.tables import fill
+from machine import build, machine, refuse
+from report.draw import pyplot
+from report.figures import ROOT, here, stamp
+from report.tables import fill, markdown
 
 PAGE = ROOT / "perf/STABILITY.md"
 FLOOR, CEILING = 1e-6, 10  # ends of the plot: values beyond them are drawn there, as triangles
@@ -34,7 +34,7 @@ GROUPS = {
 
 
 def ratio(case):
-    """Returns the worst error over its bound; None where the case is right or wrong."""
+    """Returns the worst error over its bound, or None if the case is right or wrong."""
     if not case["bound"]:
         return None
     return math.inf if case["worst"] is None else case["worst"] / case["bound"]
@@ -45,13 +45,9 @@ def number(value):
 
 
 def table(cases):
-    lines = ["| case | samples | error | worst | bound | worst / bound |", "|---|--:|---|--:|--:|--:|"]
-    for case in cases:
-        part = ratio(case)
-        lines.append(
-            f"| {case['name']} | {case['samples']:,} | {case['error']} | {number(case['worst'])} | "
-            f"{number(case['bound'])} | {'' if part is None else number(part)} |")
-    return lines
+    rows = [[case["name"], f"{case['samples']:,}", case["error"], number(case["worst"]), number(case["bound"]),
+             number(ratio(case)) if case["bound"] else ""] for case in cases]
+    return markdown(["case", "samples", "error", "worst", "bound", "worst / bound"], rows, right=(1, 3, 4, 5))
 
 
 def plot(cases, file):
@@ -108,23 +104,22 @@ def main():
     else:
         refuse(words, __doc__)
     build("test", "stability_test", "load_test", "search_test", "fuzz_test", "cli_test", needs=["--tests", "--bench"])
-    file, here = pathlib.Path(os.environ.get("IST_STABILITY", ROOT / "build/stability.jsonl")), machine()
-    passed = tried(file, *efforts)
-    (folder / "results" / here.results.name).mkdir(parents=True, exist_ok=True)
-    shutil.copy(file, folder / "results" / here.results.name / "stability.jsonl")
-    cases = [json.loads(line) for line in file.open()]
-    order = list(GROUPS)
-    cases.sort(key=lambda case: order.index(case["group"]))  # stable: as they were tried
-    (folder / "pictures").mkdir(parents=True, exist_ok=True)
+    file, on = pathlib.Path(os.environ.get("IST_STABILITY", ROOT / "build/stability.jsonl")), machine()
+    passed, results = tried(file, *efforts), folder / "results" / on.results.name
+    for made in (results, folder / "pictures"):
+        made.mkdir(parents=True, exist_ok=True)
+    shutil.copy(file, results / "stability.jsonl")
+    # The cases of a group stay in the order of the tests.
+    cases = sorted(map(json.loads, file.open()), key=lambda case: list(GROUPS).index(case["group"]))
     plot(cases, folder / "pictures/stability.svg")
     broken = [case for case in cases if case["broken"]]
-    lines = [f"{here.model}, {os.cpu_count()} cores; {here.compiler}; commit {here.commit}. {len(cases)} cases, "
+    lines = [f"{on.model}, {os.cpu_count()} cores; {on.compiler}; commit {on.commit}. {len(cases)} cases, "
              f"{sum(c['samples'] for c in cases):,} samples, {len(broken)} broken.", "",
              "![The worst error of each case over its bound](pictures/stability.svg)", ""]
     for group, title in GROUPS.items():
         chosen = [case for case in cases if case["group"] == group]
         if chosen:
-            lines += [f"## {title}", "", *table(chosen), "", stamp(here.commit, datetime.date.today().isoformat(), "stability_report.py"), ""]
+            lines += [f"## {title}", "", *table(chosen), "", stamp(*here(), "stability_report.py"), ""]
     if folder.resolve() != PAGE.parent:
         shutil.copy(PAGE, folder)
     fill(folder / PAGE.name, "cases", "\n".join(lines))

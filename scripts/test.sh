@@ -84,12 +84,7 @@ threads() {  # file by file, because builds of several files as one hide a missi
 
 sanitize() { IST_EFFORT=$few run sanitize tests_sanitize -L '^sanitize$'; }
 
-golden() { run "wasm -DIST_WERROR=ON -DIST_WITH_LOOP=OFF" golden_test; }
-
-page() {
-  part "the page"
-  scripts/viewer.sh
-}
+page() { part "the page"; scripts/viewer.sh; }
 
 labelled() {  # the rest of the test preset: arguments for ctest
   part "preset test"
@@ -155,7 +150,7 @@ case $what in
     scripts/setup.sh --all
     threads
     sanitize
-    golden
+    run "wasm -DIST_WERROR=ON -DIST_WITH_LOOP=OFF" golden_test
     page
     labelled all
     ;;

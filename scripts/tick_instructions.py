@@ -6,13 +6,13 @@ and each removed effect must save instructions; otherwise this fails.
     scripts/tick_instructions.py [TICKS]    by default 300"""
 
 import json
+import math
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 
-from machine import build, machine, refuse
+from machine import build, machine, output, refuse
 
 BODIES = """unit = "mm"
 [fixed]
@@ -40,74 +40,46 @@ EFFECTS = {
     "gravity": "[effects.gravity]\nmass = 0.05\n",
     "snap": "[effects.snap]\nmove = [2, 0, -2]\nradius = 4\n",
 }
-ALL = BODIES + "".join(EFFECTS.values())
 
 
-def taken_out(text, effect):
-    """Returns the scene without a table, as one gets it by editing the file."""
-    return re.sub(rf"\[effects\.{effect}\]\n(?:[^\[\n].*\n)*", "", text)
-
-
-class Counter:
-    def __init__(self, program, ticks, folder):
-        self.program, self.ticks, self.folder = program, ticks, folder
-
-    def count(self, *what):
-        """Returns the instructions of the ticks alone, their result, and the number of effects."""
-        out = self.folder / "callgrind.out"
-        run = subprocess.run(
-            ["valgrind", "--tool=callgrind", "--collect-atstart=no",
-             "--toggle-collect=count_tick", f"--callgrind-out-file={out}",
-             self.program, *what, str(self.ticks)],
-            capture_output=True, text=True, check=False)
-        if run.returncode != 0:
-            sys.exit(f"tick_instructions: {run.stderr}")
-        digest, effects = run.stdout.split()
-        found = re.search(r"^(?:summary|totals): (\d+)", out.read_text(), re.MULTILINE)
-        instructions = int(found.group(1)) if found else 0
-        if instructions < 100 * self.ticks:
-            sys.exit(f"tick_instructions: {instructions} instructions: nothing was counted")
-        return instructions, digest, int(effects)
-
-    def of_file(self, scene):
-        file = self.folder / "scene.toml"
-        file.write_text(scene)
-        return self.count(file)
-
-    def by_hand(self, effects):
-        return self.count("--by-hand", ",".join(effects) or "none")
+def count(ticks, folder, *what):
+    """Returns the instructions of the ticks alone, their result, and the number of effects."""
+    out = folder / "callgrind.out"
+    ran = output("valgrind", "--tool=callgrind", "--collect-atstart=no", "--toggle-collect=count_tick", f"--callgrind-out-file={out}",
+                 "build/bench/bench/tick_instructions", *what, ticks)
+    digest, effects = ran.stdout.split()
+    found = re.search(r"^(?:summary|totals): (\d+)", out.read_text(), re.MULTILINE)
+    instructions = int(found[1]) if found else 0
+    if instructions < 100 * ticks:
+        sys.exit(f"tick_instructions: {instructions} instructions: nothing was counted")
+    return instructions, digest, int(effects)
 
 
 def main():
     words = sys.argv[1:]
     if len(words) != 1 or not words[0].isdigit():
         refuse(words, __doc__)
-    ticks = words[0] if words else "300"
+    ticks = int(words[0]) if words else 300
     build("bench", "tick_instructions", needs=["--bench", "--package"])
-    here = machine()
-    here.results.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory() as folder:
-        counter = Counter("build/bench/bench/tick_instructions", int(ticks), pathlib.Path(folder))
-        lines, failed, before = [], False, None
-        left, text = list(EFFECTS), ALL
+    lines, failed, before, left = [], False, math.inf, list(EFFECTS)
+    with tempfile.TemporaryDirectory() as name:
+        scene = pathlib.Path(name, "scene.toml")
+        scene.write_text(BODIES + "".join(EFFECTS.values()))
         # The contact, which is first, goes last: others act at contacts.
         for effect in [None, *reversed(EFFECTS)]:
             if effect is not None:
                 left.remove(effect)
-                text = taken_out(text, effect)
-            removed, by_hand = counter.of_file(text), counter.by_hand(left)
-            same = removed == by_hand and removed[2] == len(left)
-            fewer = before is None or removed[0] < before
+                scene.write_text(re.sub(rf"\[effects\.{effect}\]\n(?:[^\[\n].*\n)*", "", scene.read_text()))
+            removed, by_hand = count(ticks, scene.parent, scene), count(ticks, scene.parent, "--by-hand", ",".join(left) or "none")
+            same, fewer = removed == by_hand and removed[2] == len(left), removed[0] < before
             before = removed[0]
             failed |= not (same and fewer)
-            lines.append({"effects": left.copy(), "ticks": int(ticks),
-                          "instructions_taken_out": removed[0],
-                          "instructions_by_hand": by_hand[0],
-                          "instructions_a_tick": round(removed[0] / int(ticks), 1),
-                          "digest": removed[1], "same": same})
+            lines.append({"effects": left.copy(), "ticks": ticks, "instructions_taken_out": removed[0], "instructions_by_hand": by_hand[0],
+                          "instructions_a_tick": round(removed[0] / ticks, 1), "digest": removed[1], "same": same})
             said = "same" if same else f"NOT THE SAME: {removed} {by_hand}"
-            print(f"{', '.join(left) or 'no effects':<58} {removed[0]:>12} {by_hand[0]:>12}  "
-                  f"{said if fewer else said + ', AND NOT FEWER'}", flush=True)
+            print(f"{', '.join(left) or 'no effects':<58} {removed[0]:>12} {by_hand[0]:>12}  {said}{'' if fewer else ', AND NOT FEWER'}", flush=True)
+    here = machine()
+    here.results.mkdir(parents=True, exist_ok=True)
     context = dict(each.split("=", 1) for each in here.context)
     (here.results / "tick_instructions.json").write_text(json.dumps({"context": context, "scenes": lines}, indent=2) + "\n")
     sys.exit(1 if failed else 0)

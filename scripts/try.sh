@@ -1,19 +1,19 @@
 #!/usr/bin/env bash
-# Compares the working tree with HEAD, for those who change a kernel: builds both as users do, asks `ist bench` of each in turn,
-# and shows what became faster or slower. Two minutes once both are built; the first time the build of HEAD takes some
-# three minutes more. A row counts where the medians of all runs of one side lie beyond those of the other, by 3 % at least.
+# Compares the working tree with HEAD, for work on a kernel. It builds both as users do, runs `ist bench` of each in turn, and shows the rows
+# that became faster or slower. It takes two minutes once both are built. The first build of HEAD takes some three minutes more.
+# A row counts if the medians of all runs of one side lie beyond those of the other side, by 3 % at least.
 #
 #   scripts/try.sh                 the built-in jaws, in voxels of 0.4 mm
 #   scripts/try.sh ARGUMENT …      of `ist bench`: FIXED MOVING, --voxel-size 0.2, …
 #
-# Exits with 0 where no row is slower, 1 where one is, lists other pairs or is gone, 2 where it could not compare.
+# The exit code is 0 if no row is slower, 1 if one is, lists other pairs or is gone, and 2 if the sides could not be compared.
 # scripts/bench_compare.sh compares two commits in more benchmarks.
 set -eEuo pipefail
 cd "$(dirname "$0")/.."
 trap 'exit 2' ERR
 fail() { echo "try: $*" >&2; exit 2; }
 case ${1:-} in
-  -h | --help) sed -n '2,11s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  -h | --help) sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0"; exit 0 ;;
 esac
 paths=(CMakeLists.txt CMakePresets.json src simd)
 [ -n "$(git status --porcelain -- "${paths[@]}")" ] || fail "nothing that is compiled differs from HEAD: change something first"

@@ -16,9 +16,10 @@ import {startEngine} from '../tests/viewer/engine.mjs';
 
 const root = fileURLToPath(new URL('..', import.meta.url));
 const command = path.resolve(process.env.IST_COMMAND ?? path.join(root, 'build/release/ist'));
-const voxelSize = 0.4,
-  rounds = 5,
-  shifts = [-2, -1.5, -1, -0.5, 0];
+const voxelSize = 0.4;
+const rounds = 5;
+const shifts = [-2, -1.5, -1, -0.5, 0];
+const question = `collide upper_jaw.stl lower_jaw.stl --voxel-size ${voxelSize} --repeat 100 --json`;
 const median = (numbers) => [...numbers].sort((a, b) => a - b)[Math.floor(numbers.length / 2)];
 
 const folder = mkdtempSync(path.join(tmpdir(), 'ist-ratio-'));
@@ -33,21 +34,8 @@ try {
       page = [];
     let commit;
     for (let round = 0; round < rounds; ++round) {
-      const [header, line] = ist(
-        'collide',
-        'upper_jaw.stl',
-        'lower_jaw.stl',
-        '--voxel-size',
-        `${voxelSize}`,
-        '--move',
-        `0,0,${dz}`,
-        '--repeat',
-        '100',
-        '--json',
-      )
-        .trimEnd()
-        .split('\n')
-        .map((text) => JSON.parse(text));
+      const lines = ist(...question.split(' '), '--move', `0,0,${dz}`).trimEnd().split('\n');
+      const [header, line] = lines.map((text) => JSON.parse(text));
       commit = header.commit;
       native.push(line.microseconds_median);
       page.push(engine.ask('collide', {pose: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, dz, 1]}).microseconds);
@@ -60,19 +48,8 @@ try {
   const middle = median(rows.map(({native, page}) => page / native));
   const at = rows.find(({native, page}) => page / native === middle);
   const processor = /model name\s*: (.*)/.exec(readFileSync('/proc/cpuinfo', 'utf8'))?.[1] ?? 'unknown';
-  writeFileSync(
-    path.join(root, 'src/viewer/page/native_ratio.json'),
-    `${JSON.stringify(
-      {
-        ratio: Number(middle.toFixed(1)),
-        native_microseconds: Number(at.native.toFixed(1)),
-        machine: processor,
-        commit: at.commit,
-      },
-      null,
-      2,
-    )}\n`,
-  );
+  const figure = {ratio: Number(middle.toFixed(1)), native_microseconds: Number(at.native.toFixed(1)), machine: processor, commit: at.commit};
+  writeFileSync(path.join(root, 'src/viewer/page/native_ratio.json'), `${JSON.stringify(figure, null, 2)}\n`);
 } finally {
   rmSync(folder, {recursive: true});
 }

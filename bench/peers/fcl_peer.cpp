@@ -13,6 +13,8 @@
 namespace ist::bench {
 namespace {
 
+constexpr bool kWithPoints = true;  // the nearest points are a part of the answer
+
 using Model = fcl::BVHModel<fcl::OBBRSS<double>>;
 
 std::shared_ptr<const Model> model_of(const TriangleMesh& mesh) {
@@ -41,7 +43,7 @@ class FclPeer : public Peer {
   DistanceInterval distance(const Eigen::Isometry3d& pose) override {
     fcl::DistanceResult<double> result;
     fcl::distance<double>(fixed_.get(), fcl::Transform3d::Identity(), moving_.get(), pose,
-                          fcl::DistanceRequest<double>(), result);
+                          fcl::DistanceRequest<double>(kWithPoints), result);
     const double found = std::max(result.min_distance, 0.0);
     return {found, found};
   }
@@ -80,7 +82,7 @@ class FclWithinPeer final : public Peer {
     fcl::DistanceResult<double> result;
     WithinTolerance node;
     fcl::detail::initialize<double>(node, *fixed_, fcl::Transform3d::Identity(), *moving_, pose,
-                                    fcl::DistanceRequest<double>(), result);
+                                    fcl::DistanceRequest<double>(kWithPoints), result);
     fcl::detail::distance<double>(&node);
     const double found = std::max(result.min_distance, 0.0);
     return {std::max(found - kTolerance, 0.0), found};

@@ -19,7 +19,7 @@ enum class Question : std::uint8_t {
   kMeets,       ///< whether any triangles meet
   kPairs,       ///< all pairs of triangles that meet
   kCandidates,  ///< pairs among which are all that meet
-  kDistance,    ///< how far the surfaces are apart, to within kTolerance
+  kDistance,    ///< how far the surfaces are apart, to within kTolerance, and the nearest points
 };
 inline constexpr Question kQuestions[] = {Question::kMeets, Question::kPairs, Question::kCandidates,
                                           Question::kDistance};

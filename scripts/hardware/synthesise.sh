@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Synthesises src/hardware/rtl/ist_pair_test.v with yosys, without the port that only tests read.
-# Fails where there is a latch, a divider, a loop, or not four multiplications, before and after.
+# Fails if the circuit has a latch, a divider or a loop, or not four multiplications, before or after.
 #
 #   scripts/hardware/synthesise.sh ice40|ecp5 IST FOLDER
 #
@@ -17,7 +17,7 @@ case $family in
 esac
 mkdir -p "$folder"
 "$ist" table --format verilog -o "$folder/ist_table_rom.v" >&2
-# What two drivers drive, yosys 0.23 only warns of. A netlist of single wires is simulated faster.
+# yosys 0.23 only warns of a wire with two drivers. A netlist of single wires is simulated faster.
 if ! yosys -q -l "$folder/$family.log" -e 'river conflict' -p "
   read_verilog $folder/ist_table_rom.v $rtl/ist_pair_test.v
   hierarchy -check -top ist_pair_test

@@ -19,7 +19,7 @@ TILES = 1 << 20  # samples that are looked at together
 
 
 class Command:
-    """Runs `ist` in a folder of its own, in which it makes the built-in jaws."""
+    """Runs `ist` in a folder of its own, and makes the built-in jaws there."""
 
     def __init__(self, ist, folder):
         self.ist, self.folder = ist, folder
@@ -83,22 +83,46 @@ def positions(vertices):
     return np.stack([vertices["x"], vertices["y"], vertices["z"]], axis=1).astype(float)
 
 
+def eye_axes(back):
+    """Returns the directions to the right, up and towards an eye that stands upright far away in a direction."""
+    back = back / np.linalg.norm(back)
+    right = np.cross([0, 0, 1], back)
+    right /= np.linalg.norm(right)
+    return np.array([right, np.cross(back, right), back])
+
+
+def normals_of(triangles):
+    """Returns the normals of triangles, of length 1."""
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+
+
 def cross(a, b):
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
 class DepthBuffer:
-    """The triangle nearest to the eye at each sample, or -1, and the weights of its corners there.
+    """The number of the triangle or ball nearest to the eye at each sample, or -1, and its depth.
 
-    Points are in samples: to the right, up, and towards the eye. Triangles that look away are not drawn, so bodies
-    must be closed and wound outwards.
+    Points are in samples: to the right, up, and towards the eye. Triangles that look away are not drawn, so bodies must be closed and wound outwards.
     """
 
     def __init__(self, width, height):
         self.width, self.height = width, height
         self.depth = np.full(width * height, -np.inf)
-        self.triangle = np.full(width * height, -1)
-        self.weights = np.zeros((width * height, 3))
+        self.nearest = np.full(width * height, -1)
+
+    def draw_balls(self, balls):
+        """Draws balls, a row each: the centre and the radius."""
+        grid = np.arange(self.width * self.height).reshape(self.height, self.width)
+        y, x = np.divmod(grid.ravel(), self.width)
+        for ball, (right, up, near, radius) in enumerate(balls):
+            low, high = np.floor([up - radius, right - radius]).clip(0).astype(int), np.ceil([up + radius, right + radius]).astype(int)
+            at = grid[low[0]:high[0], low[1]:high[1]].ravel()
+            squared = radius**2 - (x[at] + 0.5 - right) ** 2 - (y[at] + 0.5 - up) ** 2
+            depth = near + np.sqrt(squared.clip(0))
+            seen = (squared > 0) & (depth > self.depth[at])
+            self.depth[at[seen]], self.nearest[at[seen]] = depth[seen], ball
 
     def draw(self, points, faces):
         corners = points[faces]
@@ -120,12 +144,11 @@ class DepthBuffer:
         weights /= cross(b - a, c - a)[..., None]
         depth = (weights * corners[:, None, :, 2]).sum(-1)
         hit = (weights >= 0).all(-1) & (x >= 0) & (x < self.width) & (y >= 0) & (y < self.height)
-        place, depth, weights = (y * self.width + x)[hit], depth[hit], weights[hit]
+        place, depth = (y * self.width + x)[hit], depth[hit]
         triangles = np.broadcast_to(triangles[:, None], hit.shape)[hit]
         order = np.argsort(depth, kind="stable")  # of two at one sample the nearer is written last
         order = order[depth[order] > self.depth[place[order]]]
-        place = place[order]
-        self.depth[place], self.triangle[place], self.weights[place] = depth[order], triangles[order], weights[order]
+        self.depth[place[order]], self.nearest[place[order]] = depth[order], triangles[order]
 
 
 def save_small_png(figure, file, dpi=100):
@@ -136,7 +159,7 @@ def save_small_png(figure, file, dpi=100):
     colours = palette.getpalette()
     for i in range(0, len(colours), 3):
         if min(colours[i : i + 3]) >= 248:
-            colours[i : i + 3] = 255, 255, 255  # the ground, of which some palettes make nearly white
+            colours[i : i + 3] = 255, 255, 255  # the ground, which some palettes show nearly white
     palette.putpalette(colours)
     pathlib.Path(file).parent.mkdir(parents=True, exist_ok=True)
     image.quantize(palette=palette, dither=Image.Dither.FLOYDSTEINBERG).save(file, optimize=True)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds what is released from the sources that this script lies in, which release.sh has unpacked, and puts it into a folder.
+# Builds a release from the sources around this script, which release.sh has unpacked, and puts it into a folder.
 #
 #   build.sh FOLDER [-D…]     with options for CMake
 set -euo pipefail
@@ -11,7 +11,7 @@ export SOURCE_DATE_EPOCH
 version=$(scripts/version.sh)
 part() { echo "== $1 (after $SECONDS s)"; }
 
-cmake --preset release "$@"  # first, for it says what is missing or wrong
+cmake --preset release "$@"  # first, because it names missing packages
 
 part "the page"
 scripts/viewer.sh

@@ -1,8 +1,8 @@
-"""Writes the notices of all that others wrote and a release has in it, and of the shared libraries that it loads: name, version,
-licence, where it is used, and the text of the licence. Fails where something is used that third_party.toml does not know.
+"""Writes the notices of the libraries of others in a release, and of the shared libraries that it loads: name, version, licence, uses, and the text
+of the licence. Fails if a release uses a library that third_party.toml does not know.
 
-Nobody lists uses by hand: headers come from the files that the compiler says it read, archives from the linker, shared libraries
-from the files themselves, scripts of the page from the bundler, and parts of the site from the files that they are copies of.
+The script finds the uses itself. The compiler tells the headers, the linker the archives, and the bundler the scripts of the page. Files name the
+shared libraries that they load. A part of the site is known by its copy.
 
     third_party.py FILE       of what build.sh has built in build/"""
 
@@ -27,7 +27,7 @@ def output(*command, **options):
 
 
 def owners(files):
-    """Debian's package of each file, without its architecture; the file itself where no package has it."""
+    """Returns Debian's package of each file, without its architecture, or the file itself if no package has it."""
     asked = {}  # the name that is asked for, and the file that is meant: dpkg knows some by /lib, which is /usr/lib
     for file in files:
         asked[file] = file
@@ -44,22 +44,18 @@ def owners(files):
 
 
 def headers(build):
-    """All that the compiler has read for a build by ninja."""
+    """Returns the files that the compiler has read for a build by ninja."""
     lines = output("ninja", "-C", build, "-t", "deps").splitlines()
     return {str((build / line.strip()).resolve()) for line in lines if line.startswith("    ")}
 
 
-def link_command(build, target):
+def archives(build, target, result):
+    """Returns the archives and objects that the linker takes for a target. It links the target once more, into a file of no use."""
     commands = output("ninja", "-C", build, "-t", "commands", target).splitlines()
     found = [re.sub(r"^: && | && .*$", "", line) for line in commands if line.startswith(": && ") and " -o " in line]
     if not found:
         raise SystemExit(f"third_party: nothing links {target} in {build}")
-    return shlex.split(found[-1])
-
-
-def archives(build, target, result):
-    """The archives and objects that the linker takes for a target; it links it once more, into a file of no use."""
-    words = link_command(build, target)
+    words = shlex.split(found[-1])
     words[words.index("-o") + 1] = str(result)
     said = output(*words, "-Wl,--trace", cwd=build)
     names = re.findall(r"^\(?(/[^()\n]+\.[ao])\b", said, re.MULTILINE)
@@ -73,7 +69,7 @@ def loaded(binary):
 
 
 def copies(site, theme):
-    """The files of a theme that a site has copies of, by its content; and those of the site that nobody is known for."""
+    """Returns the files of a theme that a site has copies of, and the other files of the site. Their content decides."""
     known = {hashlib.sha256(file.read_bytes()).digest(): str(file.resolve()) for file in theme.rglob("*") if file.is_file()}
     found, unknown = set(), set()
     for file in site.rglob("*"):
@@ -84,7 +80,7 @@ def copies(site, theme):
 
 
 class Uses(collections.defaultdict):
-    """For each owner, what is released with it, and in which ways."""
+    """By owner, the released parts that use it, and the ways of their uses."""
 
     def __init__(self, project):
         super().__init__(lambda: collections.defaultdict(set))
@@ -95,18 +91,12 @@ class Uses(collections.defaultdict):
             self[owner][released].add(way)
 
 
-def in_packages(uses, build):
-    uses.add("Debian packages", COMPILED, headers(build))
-    for target in ("ist_cli", "ist_shared", "ist_loop_shared", "ist_hardware_shared"):
-        uses.add("Debian packages", LINKED, archives(build, target, build / "again"))
-    for binary in (build / "ist", *(build / "src/package").glob("*.so")):
-        uses.add("Debian packages", LOADED, loaded(binary))
-
-
-def in_wheel(uses, build):
-    uses.add("wheel", COMPILED, headers(build))
-    uses.add("wheel", LINKED, archives(build, "ist_loop_shared", build / "again"))
-    uses.add("wheel", LOADED, loaded(build / "src/package/libist_loop.so.0"))
+def in_binaries(uses, released, build, targets, binaries):
+    uses.add(released, COMPILED, headers(build))
+    for target in targets:
+        uses.add(released, LINKED, archives(build, target, build / "again"))
+    for binary in binaries:
+        uses.add(released, LOADED, loaded(binary))
 
 
 def in_page(uses, build, bundled):
@@ -125,26 +115,21 @@ def in_site(uses, site, theme):
     if reference.exists():
         uses["doxygen"]["site"].add(COPIED)
     found, unknown = copies(site, theme)
-    own = ("search/search_index.json",)
-    unknown = {file for file in unknown if not file.startswith(str(reference)) and not file.endswith(own)}
     uses.add("site", COPIED, found)
     for file in unknown:
-        uses[file]["site"].add(COPIED)
+        if not file.startswith(str(reference)):
+            uses[file]["site"].add(COPIED)
 
 
 def entry_of(owner, entries):
-    """The entry that an owner belongs to, or nothing; one that names it goes before one whose pattern fits."""
-    for entry in entries:
-        if owner in entry["owners"]:
-            return entry
-    for entry in entries:
-        if any(fnmatch.fnmatchcase(owner, pattern) for pattern in entry["owners"] if "*" in pattern):
-            return entry
-    return None
+    """Returns the entry of an owner, or None. An entry with its name goes before an entry with a pattern."""
+    named = (entry for entry in entries if owner in entry["owners"])
+    fitting = (entry for entry in entries if any(fnmatch.fnmatchcase(owner, each) for each in entry["owners"] if "*" in each))
+    return next(named, None) or next(fitting, None)
 
 
 def by_entry(uses, entries):
-    """For each entry that is used its owners, and what is released with it in which ways."""
+    """Returns the used entries, with their owners, and the released parts with the ways of their uses."""
     unknown = sorted(owner for owner in uses if entry_of(owner, entries) is None)
     if unknown:
         raise SystemExit("third_party: used, and without an entry in third_party.toml: " + ", ".join(unknown))
@@ -169,17 +154,12 @@ def version_of(entry, own, modules):
 
 
 def texts_of(entry, own, modules):
-    files = [pathlib.Path(name) for name in entry.get("texts", [])]
-    for owner in () if files else own:
-        files.append(modules / owner[4:] / "LICENSE" if owner.startswith("npm:") else pathlib.Path("/usr/share/doc", owner, "copyright"))
-    texts = []
+    files = [pathlib.Path(name) for name in entry.get("texts", [])] or [
+        modules / owner[4:] / "LICENSE" if owner.startswith("npm:") else pathlib.Path("/usr/share/doc", owner, "copyright") for owner in own]
     for file in files:
         if not file.is_file():
             raise SystemExit(f"third_party: {file}, the licence of {entry['name']}, is missing")
-        text = file.read_text(errors="replace").strip()
-        if text not in texts:
-            texts.append(text)
-    return texts
+    return list(dict.fromkeys(file.read_text(errors="replace").strip() for file in files))
 
 
 def notices(found, modules, version):
@@ -208,8 +188,10 @@ def main(target):
     build = ROOT / "build"
     modules = build / "viewer/packages/node_modules"
     uses = Uses(ROOT)
-    in_packages(uses, build / "release")
-    in_wheel(uses, build / "python")
+    release, wheel = build / "release", build / "python"
+    in_binaries(uses, "Debian packages", release, ("ist_cli", "ist_shared", "ist_loop_shared", "ist_hardware_shared"),
+                [release / "ist", *(release / "src/package").glob("*.so")])
+    in_binaries(uses, "wheel", wheel, ["ist_loop_shared"], [wheel / "src/package/libist_loop.so.0"])
     in_page(uses, build / "wasm", build / "viewer/bundled.json")
     in_site(uses, build / "docs/site", pathlib.Path("/usr/lib/python3/dist-packages/mkdocs"))
     entries = tomllib.loads((pathlib.Path(__file__).parent / "third_party.toml").read_text())["library"]

@@ -2,7 +2,7 @@
 
 from report.draw import DOTTED, LOG, line, panel, plot, style
 from report.results import Run
-from report.tables import POLICIES, Table, between, code, is_loss, number, ratio, row, runs, scaled, value_of
+from report.tables import POLICIES, Table, between, code, is_loss, number, part, ratio, row, runs, scaled, value_of
 
 BUDGET = 300  # µs, of the first question
 WANTED = 0.1  # mm, of the second
@@ -11,41 +11,36 @@ NAMES = {"exact": "pairs of triangles", "touches": "whether triangles meet"}
 HERTZ = ("rate, Hz", lambda r: 1e6 / r["p50_us"])
 
 
-class First:
-    """The errors and times at first contact, as curves of a policy."""
-
-    def __init__(self, results):
-        self.runs = results.runs("accuracy_bench", "first")
-
-    def of(self, policy):
-        return [run for run in self.runs if run.parts[2] == policy]
-
-    def curve(self, policy, x, y):
-        """Points of two counters."""
-        return sorted((value_of(run, x), value_of(run, y)) for run in self.of(policy))
+size = part(1)
 
 
-def size(run):
-    return float(run.parts[1])
+def first(results, policy):
+    """Returns the errors and times at first contact by a policy, voxel size by voxel size."""
+    return [run for run in results.runs("accuracy_bench", "first") if run.parts[2] == policy]
+
+
+def curve(results, policy, x, y):
+    """Returns points of two counters at first contact."""
+    return sorted((value_of(run, x), value_of(run, y)) for run in first(results, policy))
 
 
 def within_budget(results, _program):
-    first, found = First(results), []
+    found = []
     for policy in POLICIES:
-        error, at = (between(first.curve(policy, "p50_us", y), BUDGET) for y in ("error_max", size))
+        error, at = (between(curve(results, policy, "p50_us", y), BUDGET) for y in ("error_max", size))
         if error is None:
-            coarsest, *_, finest = first.curve(policy, "p50_us", "error_max")
+            coarsest, *_, finest = curve(results, policy, "p50_us", "error_max")
             error = f"over {number(coarsest[1])}" if coarsest[0] > BUDGET else f"{number(finest[1])} or better"
         found.append(row(policy, policy=f"`{policy}`", error=error, size=number(at, 2) if at else "beyond the measured ones", time=BUDGET))
-    return [*found, *(row(name, policy=NAMES[name], error="0", size="any", time=first.of(name)[0]["p50_us"]) for name in NAMES)]
+    return [*found, *(row(name, policy=NAMES[name], error="0", size="any", time=first(results, name)[0]["p50_us"]) for name in NAMES)]
 
 
 def for_wanted(results, _program):
-    first, found = First(results), []
+    found = []
     for policy in POLICIES:
-        at = {y: between(first.curve(policy, "error_max", y), WANTED) for y in (size, "p50_us", "MB", "build_ms")}
+        at = {y: between(curve(results, policy, "error_max", y), WANTED) for y in (size, "p50_us", "MB", "build_ms")}
         if at[size] is None:
-            best = first.curve(policy, "error_max", "p50_us")[0][0]
+            best = curve(results, policy, "error_max", "p50_us")[0][0]
             found.append(row(policy, **dict.fromkeys(("time", "rate", "MB", "s"), ""), size=f"not reached: {number(best)} mm with the finest"))
         else:
             found.append(row(policy, size=number(at[size], 2), time=at["p50_us"], rate=1e6 / at["p50_us"], MB=at["MB"], s=at["build_ms"] / 1e3))
@@ -53,9 +48,8 @@ def for_wanted(results, _program):
 
 
 def advice(results, program):
-    first = First(results)
-    curves = {"error": first.curve("slab", size, "error_max"), "budget": first.curve("slab", size, "p50_us")}
-    return [Run(run | {f"curve_{key}": between(curve, run["voxel_size"]) or "beyond what was measured" for key, curve in curves.items()})
+    curves = {"error": curve(results, "slab", size, "error_max"), "budget": curve(results, "slab", size, "p50_us")}
+    return [Run(run | {f"curve_{key}": between(points, run["voxel_size"]) or "beyond what was measured" for key, points in curves.items()})
             for run in results.runs(program, "advise")]
 
 
@@ -122,7 +116,7 @@ TABLES = {
         ("kept, slowest, µs", "kept_max_us", lambda r: is_loss(r["fresh_max_us"] / r["kept_max_us"])), ("ticks by search", "by_search"),
         ("by kept pairs", "among_kept"), ("in a clearance", "in_clearance")]),
     "tolerance": Table("measure_bench", lambda results, _: [run for question in QUESTIONS for run in by_tolerance(results, question)], [
-        ("question", lambda r: QUESTIONS[r.parts[1]]), ("tolerance, mm", lambda r: float(r.parts[2])), ("slowest at dz, mm", 3),
+        ("question", lambda r: QUESTIONS[r.parts[1]]), ("tolerance, mm", part(2)), ("slowest at dz, mm", 3),
         ("slowest pose, µs", "p50_us", lambda r: r["p50_us"] > TICK), ("its 99 of 100, µs", "p99_us"), HERTZ, ("widest interval, mm", "width")]),
     "warm depth": Table("measure_bench", lambda results, program: [
         r for r in runs("measure", "depth", by=2)(results, program) if r["cold:upper"] > 0], [
@@ -136,23 +130,23 @@ TABLES = {
 }
 
 
-def of_first(first):
-    return f"n = {first.runs[0]['n']:.0f} ways of approach, {first.runs[0]['rounds']:.0f} rounds"
+def ways_and_rounds(results):
+    run = results.runs("accuracy_bench", "first")[0]
+    return f"n = {run['n']:.0f} ways of approach, {run['rounds']:.0f} rounds"
 
 
 @plot("accuracy_bench")
 def accuracy_for_time(results):
-    first = First(results)
-    floor = 0.7 * min(run["error_max"] for run in first.runs if run["error_max"] > 0)
-    exact = [([first.of(name)[0]["p50_us"]], [floor], style(name, label=f"{words}: error 0", linestyle=""))
+    floor = 0.7 * min(run["error_max"] for run in results.runs("accuracy_bench", "first") if run["error_max"] > 0)
+    exact = [([first(results, name)[0]["p50_us"]], [floor], style(name, label=f"{words}: error 0", linestyle=""))
              for name, words in (("exact", "all pairs of triangles"), ("touches", "whether triangles meet"))]
 
     def name_sizes(_, all_axes):
-        for run in first.of("slab") + first.of("table"):
+        for run in first(results, "slab") + first(results, "table"):
             all_axes[0].annotate(run.parts[1], (run["p50_us"], run["error_max"]), xytext=(4, 3), textcoords="offset points", fontsize=7)
         all_axes[0].annotate(f"{BUDGET} µs", (BUDGET, floor), xytext=(3, 0), textcoords="offset points", fontsize=8)
-    return {"width": 7.6, "height": 4, "n": of_first(first), "then": name_sizes, "panels": [panel(
-        [*(line(first.of(policy), "p50_us", "error_max", **style(policy)) for policy in POLICIES), *exact], [("axvline", BUDGET, DOTTED)],
+    return {"width": 7.6, "height": 4, "n": ways_and_rounds(results), "then": name_sizes, "panels": [panel(
+        [*(line(first(results, policy), "p50_us", "error_max", **style(policy)) for policy in POLICIES), *exact], [("axvline", BUDGET, DOTTED)],
         {"title": "bounds; numbers are\nvoxel sizes, mm", "title_fontsize": 8, "loc": "upper left", "bbox_to_anchor": (1, 1)}, **LOG,
         xlabel="slowest pose, µs (median, one worker)", ylabel="largest error at first contact, mm",
         title=f"I have {BUDGET} µs: what accuracy can I have?")]}
@@ -160,9 +154,9 @@ def accuracy_for_time(results):
 
 @plot("accuracy_bench")
 def time_for_accuracy(results):
-    first = First(results)
-    return {"height": 3.8, "n": of_first(first), "then": lambda figure, _: figure.suptitle(f"I need {WANTED} mm: what does it take?"), "panels": [
-        panel([line(first.of(policy), "error_max", counter, **style(policy)) for policy in POLICIES], [("axvline", WANTED, DOTTED)], legend,
+    title = f"I need {WANTED} mm: what does it take?"
+    return {"height": 3.8, "n": ways_and_rounds(results), "then": lambda figure, _: figure.suptitle(title), "panels": [
+        panel([line(first(results, policy), "error_max", counter, **style(policy)) for policy in POLICIES], [("axvline", WANTED, DOTTED)], legend,
               **LOG, xlabel="largest error at first contact, mm", ylabel=label)
         for counter, label, legend in (("p50_us", "slowest pose, µs (median)", {}), ("MB", "both trees in memory, MB", None))]}
 
@@ -184,7 +178,7 @@ def gap_by_budget(results):
     given = results.runs("accuracy_bench", "deadline")
     n = f"n = {given[0]['n']:.0f} queries a point, slab, voxels of {given[0]['voxel_size']:g} mm"
     return {"width": 6, "height": 3.8, "n": n, "panels": [panel(
-        [line([r for r in given if r.parts[2] == at], lambda r: float(r.parts[1]), "width_p50", marker=mark, label=f"{at} mm apart")
+        [line([r for r in given if r.parts[2] == at], size, "width_p50", marker=mark, label=f"{at} mm apart")
          for at, mark in zip(sorted({run.parts[2] for run in given}, key=float), "osD^")], legend={}, **LOG, xlabel="budget, µs",
         ylabel="width of the interval, mm (median)", title="What is known of the gap at a deadline")]}
 
@@ -206,7 +200,7 @@ def coherent_by_motion(results):
 def measures_by_tolerance(results):
     touch, = by_tolerance(results, "touch")
     return {"width": 7, "height": 3.8, "n": f"n = {touch['n']:.0f} rounds a pose", "panels": [panel(
-        [line(by_tolerance(results, question), lambda r: float(r.parts[2]), "p50_us", **style(look, label=QUESTIONS[question]))
+        [line(by_tolerance(results, question), part(2), "p50_us", **style(look, label=QUESTIONS[question]))
          for question, look in (("distance", "slab"), ("depth", "tight"))],
         [("axhline", touch["p50_us"], {"label": "exact touch", "color": style("touches")["color"]}),
          ("axhline", TICK, DOTTED | {"label": f"a tick of {TICK:,} µs"})], {}, **LOG,

@@ -1,9 +1,9 @@
 """Tables of programs that scripts/perf_report.py does not run: the circuit's counts in perf/HARDWARE.md and the builds in docs/performance.md."""
 
-import pathlib
 import re
 import statistics
 
+from report.figures import ROOT
 from report.results import Run
 from report.tables import POLICIES, Table, number, row
 
@@ -12,11 +12,6 @@ CLOCKS = (12e6, 48e6, 100e6)
 MEMORIES = {"one 16-bit SDRAM at 100 MHz": (2, 100e6, 0.5), "one 16-bit DDR3 at 400 MHz": (2, 800e6, 0.5)}  # bytes, transfers a second, share
 LEAF_PAIR_BYTES = 8  # two leaves of 32 bits
 SERVO = 1000  # Hz
-
-
-def latency():
-    circuit = pathlib.Path(__file__).parents[2] / "src/hardware/rtl/ist_pair_test.v"
-    return int(re.search(r"localparam LATENCY = (\d+);", circuit.read_text())[1])
 
 
 def circuit(results, program):
@@ -57,7 +52,8 @@ def voxel(run):
 
 
 def clocks(results, program):
-    found, wait = worst(results, program), latency()
+    circuit_text = (ROOT / "src/hardware/rtl/ist_pair_test.v").read_text()
+    found, wait = worst(results, program), int(re.search(r"localparam LATENCY = (\d+);", circuit_text)[1])
     return [row(f"{hertz / 1e6:g} MHz", **{voxel(run): f"{rate(hertz / run['pairs'])} … {rate(hertz / (run['pairs'] + wait * run['opened']))} Hz"
                                            for run in found}) for hertz in CLOCKS]
 

@@ -1,4 +1,4 @@
-"""How every plot of the report looks, and where it goes. A plot is a function that gives panels of lines as data."""
+"""The look and the files of all plots of the report. A plot is a function that gives panels of lines as data."""
 
 import math
 import pathlib
@@ -40,7 +40,7 @@ def panel(lines, rules=(), legend=None, **settings):
 
 
 def plain_ticks(axes):
-    """Numbers as people write them, on axes in logarithms: at each decade, and at 2 and 5 where there are few."""
+    """Writes numbers in decimals on logarithmic axes: at each decade, and at 2 and 5 if there are few decades."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
@@ -50,15 +50,22 @@ def plain_ticks(axes):
             axis.set_minor_formatter(NullFormatter())
 
 
-def draw(folder, machine_of, results):
-    """Writes each plot as NAME.svg. Below it stand how often its points were measured, and the machine."""
+def pyplot():
+    """Returns matplotlib's pyplot, which writes SVG with the same bytes each time. machine.build() has installed it."""
     import matplotlib
 
     matplotlib.use("svg")
     import matplotlib.pyplot as plt  # after the backend is chosen
 
+    plt.rcParams.update({"svg.hashsalt": "ist", "svg.fonttype": "none"})
+    return plt
+
+
+def draw(folder, machine_of, results):
+    """Writes each plot as NAME.svg. Below it stand how often its points were measured, and the machine."""
+    plt = pyplot()
     plt.rcParams.update({
-        "svg.hashsalt": "ist", "svg.fonttype": "path", "font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "axes.spines.top": False,
+        "svg.fonttype": "path", "font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "axes.spines.top": False,
         "axes.spines.right": False, "legend.frameon": False, "lines.markersize": 4.5, "lines.linewidth": 1.3, "figure.constrained_layout.use": True})
     pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
     for name, (program, function) in PLOTS.items():

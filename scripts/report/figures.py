@@ -18,15 +18,14 @@ import sys
 ROOT = pathlib.Path(__file__).parents[2]
 
 
-# Where compilers look for headers.
-FOLDERS = ("src", ".", "bench", "tests", *(f"src/{library}/include" for library in ("c", "hardware", "loop", "models")))
-# What figures begin with, by the script or the benchmark that makes them, beside a benchmark's own files: sources and folders. They rest
-# on these, on the folder of each file of src and simd that these include, directly or not, and on all else that these include.
+FOLDERS = ("src", ".", "bench", "tests", *(f"src/{library}/include" for library in ("c", "hardware", "loop", "models")))  # for the headers
+# The first sources and folders of figures, by the script or the benchmark that makes them, beside a benchmark's own files. The figures also rest
+# on the folder of each file of src and simd that these include, directly or not, and on the other files that these include.
 BEGINS = {
     "calls.py": ["bench/python", "src/c", "src/python/ist"],
     "hardware_report.py": ["scripts/hardware", "src/hardware"],
     "ist bench": ["src/cli/commands/bench.cpp", "src/advise/closing_path.cpp", "src/models"],
-    "mutate.py": ["examples", "scripts/mutants", "scripts/report", "scripts/try.py", "simd", "src", "tests"],
+    "mutate.py": ["examples", "scripts/mutants", "scripts/report", "scripts/bench_compare.py", "scripts/try.py", "simd", "src", "tests"],
     "stability_border.py": ["bench/stability_border.cpp", "tests/haptics/wall_press.cpp"],
     "stability_report.py": ["simd", "src/answers", "src/c", "src/cli", "src/ist", "src/loop", "src/models", "src/sweep", "src/verify",
                             *(f"tests/{room}" for room in ("capi", "cli", "fuzz", "query", "scene", "simd", "stability", "support"))],
@@ -44,13 +43,12 @@ IDLE = re.compile(r"-f\w+-prefix-map|-fno-sanitize|-fsanitize")
 # Those that count, and time nothing: a count is the same on every machine, whatever else runs there.
 COUNTERS = {"hardware_bench", "hardware_report.py", "mutate.py", "stability_border.py", "stability_report.py", "target_instructions.py"}
 STAMP = re.compile(r"Measured at commit `([0-9a-f]+\+?)` on (\d{4}-\d\d-\d\d) by `([\w. ]+)`")
-# Of figures that are times: the machine's, beside the stamp.
+# The state of the machine, beside the stamp of figures that are times.
 STATE = re.compile(r"Load [\d.]+ before, [\d.]+ after; a fixed loop took [\d.]+")
 # Figures that cannot be stale: a test repeats them in every run.
 REPEATED = re.compile(r"Repeated by the test `([\w.]+)`")
 # Pages of results: each of their tables needs a stamp, or the test that repeats it.
-PAGES = ["README.md", "docs/performance.md", "perf/HAPTIC_STABILITY.md", "perf/HARDWARE.md", "perf/MUTANTS.md",
-         "perf/REPORT.md", "perf/STABILITY.md"]
+PAGES = ["README.md", "docs/performance.md", "perf/HAPTIC_STABILITY.md", "perf/HARDWARE.md", "perf/MUTANTS.md", "perf/REPORT.md", "perf/STABILITY.md"]
 # The figure that the page itself shows, as JSON: its commit, and who makes it.
 SHOWN = ("src/viewer/page/native_ratio.json", "viewer_ratio.mjs")
 
@@ -67,7 +65,7 @@ def git(*arguments):
 
 
 def has_history():
-    """Whether the folder has a history of its own, and all of it. A copy inside of a repository has none."""
+    """Tells whether the folder has a whole history of its own. A copy inside of a repository does not have its own history."""
     shallow, top = (git("rev-parse", "--is-shallow-repository", "--show-toplevel") or "\n\n").splitlines()[:2]
     return shallow == "false" and pathlib.Path(top).resolve() == ROOT.resolve()
 
@@ -211,16 +209,8 @@ def tables_in(page):
         yield begin + 1, stamped
 
 
-def unstamped(page):
-    """Yields a line of text for each table of the page that names no commit."""
-    for number, is_stamped in tables_in(page):
-        if not is_stamped:
-            yield (f"{page}:{number}: the table names neither the commit that it was measured at nor a test, "
-                   "of those that ctest knows, that repeats it")
-
-
 def verdict(commit, maker):
-    """Returns what is wrong with figures of a maker at a commit, or nothing."""
+    """Returns a flaw of the figures of a maker at a commit, or an empty value."""
     if not is_commit(commit):
         return f"measured at {commit}, which is no commit of this history"
     changed = changed_since(commit, maker)
@@ -229,7 +219,7 @@ def verdict(commit, maker):
 
 
 def stale(page):
-    """Yields a line of text for each stamp of the page whose sources have changed since its commit, or that names no commit."""
+    """Yields a line of text for each stamp of the page whose sources have changed since its commit, or whose commit does not exist."""
     known = {}
     for number, commit, maker in stamps_in(page):
         if (commit, maker) not in known:
@@ -250,7 +240,9 @@ def main(pages):
             sys.exit(f"check_figures: {page} is not there: the pages of results are {', '.join(PAGES)}")
     if not has_history():
         sys.exit("check_figures: no whole history of commits is here: clone the repository, not a part of it")
-    found = [line for page in pages for line in [*unstamped(page), *stale(page)]] + (list(stale_in_page()) if pages is PAGES else [])
+    bare = [f"{page}:{number}: the table names neither the commit that it was measured at nor a test, of those that ctest knows, that repeats it"
+            for page in pages for number, is_stamped in tables_in(page) if not is_stamped]
+    found = [*bare, *(line for page in pages for line in stale(page)), *(stale_in_page() if pages is PAGES else ())]
     print("\n".join(found) if found else f"every figure on {len(pages)} page{'s' if len(pages) > 1 else ''} is of the code as it is")
     return 1 if found else 0
 

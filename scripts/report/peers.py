@@ -41,26 +41,16 @@ def fastest(rows, pose):
     return min(rows, key=lambda r: r[f"{pose}:p50_us"], default=None)
 
 
-def wins(pose):
-    """Whether a contestant is the fastest at a pose, of all or of those without a mark."""
-    return lambda r: r is fastest(r.asked, pose) or r is fastest([one for one in r.asked if unmarked(one, pose)], pose)
-
-
-def differs(r, pose):
-    return "" if r[f"{pose}:agree"] else " ≠"
-
-
-def time_at(pose, more=differs):
-    """The median of a contestant at a pose, in bold if it wins, and more of it."""
-    return lambda r: f"{'**' * wins(pose)(r)}{number(r[f'{pose}:p50_us'])}{'**' * wins(pose)(r)}{more(r, pose)}"
+def time_at(pose, more=lambda r, pose: "" if r[f"{pose}:agree"] else " ≠"):
+    """Returns the median of a contestant at a pose, and more of it. The median is bold if it is the least of all or of those without a mark."""
+    def cell(r):
+        bold = "**" if r in (fastest(r.asked, pose), fastest([one for one in r.asked if unmarked(one, pose)], pose)) else ""
+        return f"{bold}{number(r[f'{pose}:p50_us'])}{bold}{more(r, pose)}"
+    return cell
 
 
 def n(r):
     return str(int(r["n"]))
-
-
-def medians(rows):
-    return [("", marked), *((pose, time_at(pose)) for pose in poses_of(rows)), ("n", n)]
 
 
 def multiple(r, before, pose):
@@ -194,7 +184,8 @@ TABLES = {
     "versions": Table("peers_bench", runs("peers", "build"), [("library", 2), ("version", "label")]),
     "poses": Table("peers_bench", poses, [
         ("pose", 0), ("description", "words"), ("pairs that meet", "pairs"), ("gap by ist (mm)", "gap"), ("true gap (mm)", "true")]),
-    **{f"{question} {words}": Table("peers_bench", lambda results, _, s=series, q=question: players(results, s, q), medians)
+    **{f"{question} {words}": Table("peers_bench", lambda results, _, s=series, q=question: players(results, s, q), lambda rows: [
+        ("", marked), *((pose, time_at(pose)) for pose in poses_of(rows)), ("n", n)])
        for series, words in SERIES.items() if series != "cold" for question in QUESTIONS},
     "standings": Table("peers_bench", standings, [
         ("question", 0), ("bodies", "series"), ("among", "among"), ("poses", "count"), ("IST is the fastest at", "first"),

@@ -49,14 +49,3 @@ class Results:
         if not found:
             raise SystemExit(f"report: {self.folder / program}.json has no {'/'.join(first)}: remove it, and run again")
         return found
-
-
-def stamp(file, context):
-    """Writes `context`, as NAME=VALUE, into a file of results, which is whole, as it was or stamped. Google Benchmark's own option for that
-    takes no value with a '=' or a ',' in it."""
-    file = pathlib.Path(file)
-    data = json.loads(file.read_text())
-    data["context"].update(item.split("=", 1) for item in context)
-    part = file.with_suffix(".stamped")
-    part.write_text(json.dumps(data, indent=1) + "\n")
-    part.rename(file)

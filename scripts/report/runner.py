@@ -1,4 +1,4 @@
-"""Runs benchmark programs, and keeps what they give as raw results."""
+"""Runs benchmark programs, and keeps their raw results."""
 
 import json
 import os
@@ -8,7 +8,6 @@ import sys
 import time
 
 from report.figures import changed_since, has_history, is_commit
-from report.results import stamp
 
 PROGRAMS = pathlib.Path("build/bench/bench")
 
@@ -21,7 +20,7 @@ def fixed_loop():
 class Runner:
     def __init__(self, results, context, quick, environment=None):
         self.results, self.context = results, context
-        # No variable that is set for another purpose changes the measurements, if the caller gives no environment.
+        # Without an environment by the caller, variables of other purposes do not change the measurements.
         own = {name: value for name, value in os.environ.items() if not name.startswith("IST_") or name == "IST_DATA_DIR"}
         self.environment = environment or own | ({"IST_QUICK": "1"} if quick else {})
         # The least time of benchmarks that Google Benchmark repeats by itself.
@@ -29,7 +28,7 @@ class Runner:
         results.mkdir(parents=True, exist_ok=True)
 
     def run(self, programs, again):
-        """Runs those that have no results of this code yet, or all."""
+        """Runs all programs, or only the ones without results of this code."""
         missing = [p for p in programs if again or not self._is_whole(p)]
         for program in programs:
             if program not in missing:
@@ -53,7 +52,7 @@ class Runner:
         return has_history() and is_commit(commit) and not changed_since(commit, program)
 
     def measure(self, program, title, more=(), shown=False):
-        """Runs a program with more arguments. Keeps its results with those; shows what it prints, or nothing."""
+        """Runs a program with more arguments, and keeps its results with them. `shown` tells whether its output is shown."""
         loop_before, begin, part = fixed_loop(), time.monotonic(), self.results / f"{program}.part"
         print(title, file=sys.stderr)
         done = subprocess.run([PROGRAMS / program, *self.least, f"--benchmark_out={part}", "--benchmark_out_format=json", *more],
@@ -61,11 +60,15 @@ class Runner:
         if done.returncode != 0:
             part.unlink(missing_ok=True)
             sys.exit(f"perf_report: {program} failed: {''.join(done.stderr.splitlines(keepends=True)[-5:])}")
-        wrong = [run for run in json.loads(part.read_text())["benchmarks"] if run.get("error_occurred")]
-        if wrong:
-            part.unlink()
-            sys.exit(f"perf_report: {program}: {wrong[0]['name']}: {wrong[0]['error_message']}")
-        # Whole or not there: an interrupted run is run again.
-        stamp(part, [*self.context, f"seconds={time.monotonic() - begin:.1f}", f"arguments={' '.join(more)}", f"loop_before={loop_before}",
-                     f"loop_after={fixed_loop()}", f"load_after={os.getloadavg()[0]:.2f}"])
+        data = json.loads(part.read_text())
+        for run in data["benchmarks"]:
+            if run.get("error_occurred"):
+                part.unlink()
+                sys.exit(f"perf_report: {program}: {run['name']}: {run['error_message']}")
+        # Google Benchmark's own option for its context refuses values with a '=' or a ','.
+        data["context"] |= dict(item.split("=", 1) for item in self.context) | {
+            "seconds": f"{time.monotonic() - begin:.1f}", "arguments": " ".join(more), "loop_before": loop_before, "loop_after": fixed_loop(),
+            "load_after": f"{os.getloadavg()[0]:.2f}"}
+        part.write_text(json.dumps(data, indent=1) + "\n")
+        # The file of results is whole or absent. The next run repeats an interrupted one.
         part.rename(self.results / f"{program}.json")

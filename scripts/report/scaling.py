@@ -1,7 +1,9 @@
 """Tables and plots of how the time and the memory of a query grow."""
 
+import statistics
+
 from report.draw import LOG, line, panel, plot, style
-from report.tables import Table, is_loss, power, row, runs, scaled
+from report.tables import Table, is_loss, part, power, row, runs, scaled
 
 PROGRAM = "scaling_bench"
 COLOURS = ("#1b9e77", "#d95f02", "#7570b3", "#e7298a")
@@ -16,7 +18,8 @@ def queries(found):
 
 
 def fits(results, program):
-    """How time and tests grow with the leaves at each pose, in voxels of 0.8 mm and finer: in coarser ones the call itself is most of the time."""
+    """Yields how time and tests grow with the leaves at each pose, in voxels of 0.8 mm and finer. The call itself takes most of the time in
+    coarser ones."""
     for dz in ("0", "-1.5"):
         own = [run for run in results.runs(program, "leaves") if run.parts[2] == dz]
         fine = [run for run in own if float(run.parts[1]) <= 0.8]
@@ -56,10 +59,8 @@ class Line:
     """Megabytes over 1/size², through the two finest pairs of jaws: a surface's leaves grow as 1/size²."""
 
     def __init__(self, found, megabytes):
-        ends = sorted(found, key=lambda run: -float(run.parts[2]))[-2:]
-        (x0, x1), (y0, y1) = [float(run.parts[2]) ** -2 for run in ends], [megabytes(run) for run in ends]
-        self.slope = (y1 - y0) / (x1 - x0)
-        self.start = y1 - self.slope * x1
+        ends = sorted(found, key=part(2))[:2]
+        self.slope, self.start = statistics.linear_regression([part(2)(run) ** -2 for run in ends], [megabytes(run) for run in ends])
 
     def at(self, size):
         return self.start + self.slope * size**-2
@@ -76,7 +77,7 @@ def memory(results, program):
 
 
 def largest(results, program):
-    """The largest pair that was built, beside what the line through smaller ones predicts."""
+    """Returns the largest pair that was built, beside the prediction by the line through smaller ones."""
     run, (table, _) = results.runs(program, "largest")[0], memory(results, program)
     if not run["built"]:
         return []
@@ -130,9 +131,8 @@ def scaling_leaves(results):
 def scaling_overlap(results):
     found = results.runs(PROGRAM, "overlap")
     pairs, times = zip(*((r["contacts"], r["p50_us"]) for r in found if r["contacts"] > 0))
-    middle = sum(pairs) / len(pairs), sum(times) / len(times)
-    slope = sum((x - middle[0]) * y for x, y in zip(pairs, times)) / sum((x - middle[0]) ** 2 for x in pairs)
-    start, look, dz = middle[1] - slope * middle[0], style("slab", label="median"), lambda r: float(r.parts[1])
+    slope, start = statistics.linear_regression(pairs, times)
+    look, dz = style("slab", label="median"), part(1)
     common = {"legend": {"fontsize": 7}, "ylim": 0, "ylabel": "time of a query, µs"}
     return {"n": queries(found), "panels": [
         panel([line(found, dz, "p50_us", **look), line(found, dz, "p99_us", linestyle="--", color=look["color"], label="99 of 100")],
@@ -160,7 +160,7 @@ def scaling_conformal(results):
 def scaling_workers(results):
     found = results.runs(PROGRAM, "workers")
     return {"n": queries(found), "panels": [panel(
-        [line([r for r in found if r.parts[1:3] == [count, pace]], lambda r: float(r.parts[3]), counter,
+        [line([r for r in found if r.parts[1:3] == [count, pace]], part(3), counter,
               **look | {"color": colour, "label": f"{count} worker{'s' * (count == '2')}: {words}"})
          for count, colour, mark in (("1", COLOURS[2], "^"), ("2", COLOURS[0], "D"))
          for counter, words, look in (("p50_us", "median", {"marker": mark}), ("p99_us", "99 of 100", {"linestyle": "--"}))],
@@ -170,7 +170,7 @@ def scaling_workers(results):
 
 @plot(PROGRAM)
 def scaling_memory(results):
-    lines, size = [], lambda r: float(r.parts[2])
+    lines, size = [], part(2)
     for r in memory(results, PROGRAM):
         begin, end = min(map(size, r["own"])), min(r[of].size_of(GIB16) for of in ("peak", "held"))
         reach = [begin * (end / begin) ** (i / 19) for i in range(20)]

@@ -5,28 +5,17 @@ import pathlib
 
 from report.draw import DOTTED, LOG, line, panel, plot, style
 from report.results import Run
-from report.tables import POLICIES, Table, code, factor, runs
+from report.tables import POLICIES, Table, code, factor, part, runs
 
 PUBLISHED = json.loads((pathlib.Path(__file__).parents[2] / "perf/published.json").read_text())
 VOXELS, NODES, LENGTH = PUBLISHED["voxels_by_size"], PUBLISHED["nodes_at_1"], PUBLISHED["lower_jaw"]["size"][0]
 TWOS = [2**n for n in range(32)]
+VOXEL_SIZE = ("voxel size", lambda r: r.parts[1].replace("scaled", "l/s of "))
 NEAR = 2  # a number agrees with a published one if neither is more than this many times the other
-
-
-def voxel_size(run):
-    return run.parts[1].replace("scaled", "l/s of ")
-
-
-def agrees(is_so):
-    return "*Agrees*" if is_so else "*Differs*"
 
 
 def published_nodes(run):
     return NODES["all"] if run.parts[1] == "1" else ""
-
-
-def size(run):
-    return float(run.parts[1])
 
 
 def by_distance(results, program, *engine):
@@ -37,7 +26,7 @@ def by_distance(results, program, *engine):
             found.setdefault(tuple(run.parts[1:4]), []).append(run)
     sizes = sorted(dict.fromkeys(size for size, _, _ in found), key=lambda size: size.startswith("scaled"))
     for key in sorted(found, key=lambda key: (sizes.index(key[0]), key[1] == "fast", POLICIES.index(key[2]))):
-        yield key, sorted(found[key], key=lambda run: float(run.parts[4]))
+        yield key, sorted(found[key], key=part(4))
 
 
 def worst_rates(results, program, *engine):
@@ -46,7 +35,7 @@ def worst_rates(results, program, *engine):
     for (size, _, _), of in by_distance(results, program, *engine):
         contact = results.runs(program, "before_contact", size)[0]["distance"]
         worst = max(of, key=lambda run: run["p50_us"])
-        at = [float(run.parts[4]) for run in of]
+        at = list(map(part(4), of))
         made.append(Run(worst | {"contact": f"{contact:g}", "before": of[at.index(contact)],
                                  "beyond": at.index(float(worst.parts[4])) - at.index(contact)}))
     return made
@@ -92,12 +81,12 @@ TABLES = {
         ("voxel size", 1), ("spheres", code(2)), ("distance", 4), ("sphere tests", "tested"), ("on the fly, µs", "fly"), ("saved, µs", "p50_us"),
         ("times as fast", lambda r: factor(r["fly"] / r["p50_us"])), ("octree, MB", "octree_MB"), ("saved spheres, MB", "saved_MB")]),
     "rates": Table("seed_bench", worst_rates, [
-        ("voxel size", voxel_size), ("engine", 2), ("spheres", code(3)), ("worst rate, Hz", hertz), ("at distance", 4), ("sphere tests", "tests"),
+        VOXEL_SIZE, ("engine", 2), ("spheres", code(3)), ("worst rate, Hz", hertz), ("at distance", 4), ("sphere tests", "tests"),
         ("rate before contact, Hz", lambda r: hertz(r["before"])), ("sphere tests", lambda r: r["before"]["tests"])]),
     "worst cases": Table("seed_bench", worst_cases, [
-        ("voxel size", voxel_size), ("spheres", code(3)), ("worst at", 4), ("before contact", "contact"), ("right before collision", place),
+        VOXEL_SIZE, ("spheres", code(3)), ("worst at", 4), ("before contact", "contact"), ("right before collision", place),
         ("worst rate, Hz", hertz), ("published, Hz", lambda r: PUBLISHED["worst_hz"][r.parts[3]]), ("ratio", lambda r: f"{published_hertz(r):.2f}"),
-        ("as published", lambda r: agrees(1 / NEAR <= published_hertz(r) <= NEAR))]),
+        ("as published", lambda r: "*Agrees*" if 1 / NEAR <= published_hertz(r) <= NEAR else "*Differs*")]),
 }
 
 
@@ -106,7 +95,7 @@ def seed_voxels(results):
     found, fine = results.runs("seed_bench", "voxels"), {"legend": {"fontsize": 7}, **LOG, "xlabel": "voxel size, mm"}
 
     def of(counter, **look):
-        return line(found, size, counter, **look)
+        return line(found, part(1), counter, **look)
     return {"n": f"n = {min(r['n'] for r in found):.0f} to {max(r['n'] for r in found):.0f} builds a point, on all cores",
             "then": lambda _, all_axes: [axes.invert_xaxis() for axes in all_axes], "panels": [
                 panel([of(lambda r: r["cells"] ** 3, color="#888888", linestyle="--", label="all cells of a cubic grid, (l/s)³"),

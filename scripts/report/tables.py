@@ -2,12 +2,13 @@
 
 import math
 import re
+import statistics
 
 from report.results import Run
 
-# What a script writes on a page stands between these.
+# A part of a page that a script writes.
 BLOCK = re.compile(r"(<!-- (?!end of )([^>\n]*) -->\n).*?(<!-- end of \2 -->)", re.S)
-NOISE = 0.03  # factors nearer to 1 are no gain and no loss
+NOISE = 0.03  # a factor nearer to 1 is neither gain nor loss
 POLICIES = ("simple", "table", "tight", "slab")
 
 
@@ -31,15 +32,15 @@ def factor(value):
     return f"**{text}**" if is_loss(value) else text
 
 
-def markdown(head, rows):
-    """Returns the lines of a table whose cells are texts or numbers."""
+def markdown(head, rows, right=()):
+    """Returns the lines of a table. Its cells are texts or numbers, and the columns `right` are aligned to the right."""
     def line(cells):
         return "| " + " | ".join(cell if isinstance(cell, str) else number(cell) for cell in cells) + " |"
-    return [line(head), "|" + "---|" * len(head), *(line(row) for row in rows)]
+    return [line(head), "|" + "".join("--:|" if column in right else "---|" for column in range(len(head))), *map(line, rows)]
 
 
 def value_of(row, value):
-    """Returns a counter by its name, a part of the run's name by its place, or what a function of the row gives."""
+    """Returns a counter by its name, a part of the run's name by its place, or the result of a function of the row."""
     return value(row) if callable(value) else row.parts[value] if isinstance(value, int) else row[value]
 
 
@@ -92,6 +93,11 @@ def row(name, **values):
     return Run({"name": name, **values})
 
 
+def part(place):
+    """Returns a part of a run's name as a number."""
+    return lambda row: float(row.parts[place])
+
+
 def scaled(value, by):
     return lambda row: by * value_of(row, value)
 
@@ -114,7 +120,5 @@ def between(points, x):
 
 def power(xs, ys):
     """Returns the exponent p and the factor c of y = c x^p, by least squares in logarithms."""
-    xs, ys = [math.log(x) for x in xs], [math.log(y) for y in ys]
-    mean_x, mean_y = sum(xs) / len(xs), sum(ys) / len(ys)
-    exponent = sum((x - mean_x) * (y - mean_y) for x, y in zip(xs, ys)) / sum((x - mean_x) ** 2 for x in xs)
-    return exponent, math.exp(mean_y - exponent * mean_x)
+    exponent, start = statistics.linear_regression([math.log(x) for x in xs], [math.log(y) for y in ys])
+    return exponent, math.exp(start)

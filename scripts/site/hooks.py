@@ -21,8 +21,8 @@ def on_nav(nav, **_):
 
 
 def on_page_markdown(markdown, **_):
-    """Notes to the tests are left out. What belongs to an item of a list is indented by two or three columns on GitHub and by
-    four here, where a list has no boxes to tick and no fences, but code that is indented by four more than its item's text."""
+    """Leaves out notes to the tests, and adapts lists. GitHub indents the parts of an item by two or three columns, mkdocs by four. mkdocs knows
+    neither boxes to tick nor fences in lists: code is indented by four more columns than the text of its item."""
     lines, fenced, code, item = [], False, False, 4
     for line in re.sub(r"(?ms)^<!-- .*?-->\n", "", markdown).split("\n"):
         if line.startswith("```"):

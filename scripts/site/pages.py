@@ -1,9 +1,9 @@
-"""Makes the site of the pages by mkdocs, and fails at its warnings: FOLDER/site, of what README links to and what those pages
-link to, and so on. The reference that reference.sh made is copied to site/reference.
+"""Makes FOLDER/site, a site of the pages, by mkdocs, and fails at its warnings. The site has all pages that links lead to from README.
+site/reference is a copy of the reference that reference.sh made.
 
     pages.py FOLDER
 
-Where mkdocs is missing, that is said, and the exit code is 77; with IST_REQUIRE_ALL=1 it is 1. Runs by Debian's python."""
+Without mkdocs the exit code is 77; with IST_REQUIRE_ALL=1 it is 1. Runs by Debian's python."""
 
 import os
 import pathlib
@@ -32,7 +32,7 @@ def linked_files(first):
 
 
 def show_page(site):
-    """Puts the page with the engine in it, where scripts/viewer.sh made it, into the page about it."""
+    """Puts the page with the engine, if scripts/viewer.sh has made it, into the page about it."""
     made, about = ROOT / "build/viewer/ist.html", site / "docs/viewer.html"
     if not made.exists():
         print("pages: docs/viewer.html is without the page itself: scripts/viewer.sh makes that", file=sys.stderr)

@@ -3,7 +3,7 @@
 #
 #   reference.sh FOLDER
 #
-# Where doxygen is missing, that is said, and the exit code is 77; with IST_REQUIRE_ALL=1 it is 1.
+# Without doxygen the exit code is 77; with IST_REQUIRE_ALL=1 it is 1.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 if ! command -v doxygen >/dev/null; then

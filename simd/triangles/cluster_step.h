@@ -7,6 +7,7 @@
 
 #include "ist/base/platform/bit_cast.h"
 #include "ist/mesh/clusters/triangle_clusters.h"
+#include "simd/triangles/closest.h"
 
 /// The interface of the kernels that look for the triangle nearest to a point, and of those that
 /// search two trees of triangle clusters. Lengths are in mesh
@@ -257,6 +258,7 @@ struct ClusterKernels {
   NearClustersFunction near_clusters;
   NearNodesFunction near_nodes;
   NearTrianglesFunction near_triangles;
+  ClosestOctetFunction closest_octet;
 };
 
 /// The kernels without vectors: they specify the others. Cost: 0.3 µs a test of a node against

@@ -7,6 +7,7 @@
 
 #include <limits>
 
+#include "simd/triangles/closest-inl.h"
 #include "simd/triangles/clusters-inl.h"
 #include "simd/triangles/nodes-inl.h"
 #include "simd/triangles/points-inl.h"
@@ -264,7 +265,8 @@ namespace ist::simd {
         HWY_CHOOSE_##TARGET(ListLanes), HWY_CHOOSE_##TARGET(MeetChildren),       \
         HWY_CHOOSE_##TARGET(ScoreChildren), HWY_CHOOSE_##TARGET(MeetClusters),   \
         HWY_CHOOSE_##TARGET(DecideTriangles), HWY_CHOOSE_##TARGET(NearClusters), \
-        HWY_CHOOSE_##TARGET(NearNodes), HWY_CHOOSE_##TARGET(NearTriangles)       \
+        HWY_CHOOSE_##TARGET(NearNodes), HWY_CHOOSE_##TARGET(NearTriangles),      \
+        HWY_CHOOSE_##TARGET(ClosestOctet)                                        \
   }
 
 ClusterKernels cluster_kernels(std::int64_t target) {

@@ -248,8 +248,8 @@ std::size_t near_clusters_scalar(const ClusterStep& step, const ClusterPairs& pa
 }  // namespace
 
 constinit const ClusterKernels kScalarClusterKernels{
-    turn_nodes_scalar,     meet_nodes_scalar,    list_lanes_scalar,       meet_children_scalar,
-    score_children_scalar, meet_clusters_scalar, decide_triangles_scalar, near_clusters_scalar,
-    near_nodes_scalar,     near_triangles_scalar};
+    turn_nodes_scalar,     meet_nodes_scalar,     list_lanes_scalar,       meet_children_scalar,
+    score_children_scalar, meet_clusters_scalar,  decide_triangles_scalar, near_clusters_scalar,
+    near_nodes_scalar,     near_triangles_scalar, closest_octet_scalar};
 
 }  // namespace ist

@@ -74,6 +74,11 @@ ist_status status_of(const Call& call, QueryStatus status, const double* pose) {
       return call.fail(IST_VOXELS_MISSING,
                        "a tree has no voxels, which leaf pairs and contacts need: build both trees "
                        "with a voxel_size");
+    case QueryStatus::kMarginInvalid:
+      return call.fail(IST_ARGUMENT_INVALID, "margin is negative, infinite or NaN: pass a length");
+    case QueryStatus::kNoSuchTriangle:
+      return call.fail(IST_ARGUMENT_INVALID,
+                       "a triangle's index is too large: pass indices of both meshes");
     case QueryStatus::kManifoldMismatch:  // each manifold belongs to its query
     case QueryStatus::kBusy:              // a handle is used by one thread at a time
     case QueryStatus::kNotPrepared:       // of a world

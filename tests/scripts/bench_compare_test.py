@@ -79,7 +79,7 @@ class Compare(unittest.TestCase):
         self.write("base", {"gone": [1, 1]})
         self.write("head", {"new": [1, 1]})
         self.assertEqual(self.compare(), 2)
-        self.assertIn("no benchmark is on both sides", self.said)
+        self.assertIn("nothing is on both sides", self.said)
 
     def test_no_runs_are_an_error(self):
         self.assertEqual(self.compare(), 2)

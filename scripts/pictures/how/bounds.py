@@ -5,20 +5,11 @@ import numpy as np
 
 from pictures.drawing import VOXEL_SIZE, plt, read_stl
 from pictures.how.search import Octree
-from pictures.how.view import INK, POLICY, SKIN, View, save
+from pictures.how.view import CUBE, INK, POLICY, SKIN, View, save
 
-CUBE = (0.80, 0.87, 0.94)
 ACROSS = 12
 ROOT = {27: "√3/2", 54: "√6/2", 81: "3/2", 96: "√24/3", 108: "√3"}  # the radius in half edges
 TWO_CHILDREN = 54  # 36 times the square of the radius, in half edges, of a table ball that leaves stick out of farthest
-
-
-def distinct(entries):
-    """Returns the masks of each ball, by the square of its radius and its centre."""
-    balls = {}
-    for entry in entries:
-        balls.setdefault((entry["radius_squared"], tuple(entry["centre"])), []).append(entry["mask"])
-    return {ball: balls[ball] for ball in sorted(balls, key=lambda ball: (ball[0], min(balls[ball])))}
 
 
 def draw_ball(place, square, centre, masks):
@@ -35,13 +26,13 @@ def draw_ball(place, square, centre, masks):
 
 
 def draw_table(command, file):
-    balls = distinct(json.loads("\n".join(command.lines("table", "--format", "json"))))
+    balls = {}  # the masks of each ball, by the square of its radius and its centre
+    for entry in json.loads("\n".join(command.lines("table", "--format", "json"))):
+        balls.setdefault((entry["radius_squared"], tuple(entry["centre"])), []).append(entry["mask"])
+    balls = dict(sorted(balls.items(), key=lambda item: (item[0][0], min(item[1]))))
     squares = sorted({square for square, _ in balls})
-    rows, at = [], []
-    for square in squares:  # the last one, the circumsphere, stands in the shortest row
-        group = [ball for ball in balls if ball[0] == square]
-        rows.append(group)
-    last = rows.pop()
+    *rows, last = ([ball for ball in balls if ball[0] == square] for square in squares)
+    # The circumsphere stands in the shortest row.
     at = min(range(len(rows)), key=lambda row: len(rows[row]))
     figure, places = plt.subplots(len(rows), ACROSS, figsize=(12.4, 1.32 * len(rows) + 0.1))
     figure.subplots_adjust(left=0.085, right=0.995, top=0.925, bottom=0.01, wspace=0.02, hspace=0.34)
@@ -65,7 +56,7 @@ def draw_table(command, file):
 
 
 def clipped(polygon, low, high):
-    """Returns what a box leaves of a polygon (Sutherland and Hodgman)."""
+    """Returns the part of a polygon in a box (Sutherland and Hodgman)."""
     for axis in range(3):
         for sign, border in ((1, high[axis]), (-1, -low[axis])):
             kept = []
@@ -80,7 +71,7 @@ def clipped(polygon, low, high):
 
 
 class Leaf:
-    """A leaf with a slab thick enough to be seen, thicker than those of nine in ten, and the pieces of triangles in its cube."""
+    """A leaf with a visible slab, thicker than the slabs of nine in ten leaves, and the pieces of triangles in its cube."""
 
     def __init__(self, command, tree):
         cubes, tight = tree.cubes[0], tree.bounds("slab", 0)
@@ -98,17 +89,13 @@ class Leaf:
         self.middle = self.ball[0] + self.normal * tight.offset[self.index] / self.length
 
     def check(self):
-        """Fails where a bound does not hold the pieces, which would be a flaw of this picture, or worse."""
+        """Fails if a bound does not hold the pieces. That would be a flaw of this picture, or worse."""
         points = np.concatenate(self.pieces)
         rounding = 1e-5 * np.abs(points).max()
         if (np.linalg.norm(points - self.ball[0], axis=1) > self.ball[1] + rounding).any():
             raise SystemExit("leaf_bounds: the tight ball does not hold its triangles")
         if (np.abs((points - self.middle) @ self.normal) > self.half / self.length + rounding).any():
             raise SystemExit("leaf_bounds: the slab does not hold its triangles")
-
-    def draw_content(self, view):
-        view.cube(self.low, VOXEL_SIZE, INK)
-        view.faces(self.pieces, SKIN, INK)
 
 
 def draw_slab(view, leaf):
@@ -133,7 +120,7 @@ def draw_node(place, tree):
     view.cube(cube - VOXEL_SIZE, 2 * VOXEL_SIZE, INK, width=0.5)
     out = 0
     for leaf in tree.cubes[0][first[node]:first[node] + 2]:
-        view.cube(leaf[:3] - VOXEL_SIZE / 2, VOXEL_SIZE, INK, (0.80, 0.87, 0.94), zorder=2)
+        view.cube(leaf[:3] - VOXEL_SIZE / 2, VOXEL_SIZE, INK, CUBE, zorder=2)
         view.ball(leaf[:3], leaf[3], POLICY["simple"], alpha=0.10)
         out = max(out, np.linalg.norm(leaf[:3] - published[node, :3]) + leaf[3] - published[node, 3])
     view.ball(published[node, :3], published[node, 3], POLICY["table"], alpha=0)
@@ -154,7 +141,8 @@ def draw_bounds(command, file):
             ("tight: the ball round the pieces,", *leaf.ball, POLICY["tight"]),
             ("slab: that ball, cut by a slab of", *leaf.ball, POLICY["tight"]))):
         view = View(place, leaf.centre)
-        leaf.draw_content(view)
+        view.cube(leaf.low, VOXEL_SIZE, INK)
+        view.faces(leaf.pieces, SKIN, INK)
         view.ball(centre, radius, colour, alpha=0.10)
         place.set_title(f"{title}\nradius {radius:.3f} mm")
         view.show(0.92 * VOXEL_SIZE)

@@ -5,22 +5,17 @@ import colorsys
 
 import numpy as np
 
-from pictures.drawing import DepthBuffer, plt, read_stl, save_small_png
+from pictures.drawing import DepthBuffer, normals_of, plt, read_stl, save_small_png
 from pictures.how.triangle_order import WIDTH, frame_of, order_of
-from pictures.how.view import INK, LIGHT, POLICY, SKIN, View
+from pictures.how.view import INK, POLICY, SKIN, View, light_on
 
 PANEL = 1080, 800  # samples, two to a pixel
 NEAR = 110  # samples a mm
-LINE, EDGE = 0.25, 0.72  # what is left of the light where nodes meet, and where triangles do
-
-
-def palette(count):
-    """Returns a colour for each node; those that follow each other differ."""
-    return np.array([colorsys.hsv_to_rgb(0.618034 * node % 1, 0.22 + 0.12 * (node % 3), 0.95) for node in range(count)])
+LINE, EDGE = 0.25, 0.72  # the light on the lines between nodes, and between triangles
 
 
 def borders(labels):
-    """Returns where the sample to the right or above has another label."""
+    """Returns the samples whose neighbour to the right or above has another label."""
     found = np.zeros(labels.shape, bool)
     found[:, :-1] |= labels[:, :-1] != labels[:, 1:]
     found[:-1] |= labels[:-1] != labels[1:]
@@ -32,14 +27,13 @@ def seen(triangles, view, scale):
     buffer = DepthBuffer(*PANEL)
     points = view.seen(triangles.reshape(-1, 3)) * scale + (PANEL[0] / 2, PANEL[1] / 2, 0)
     buffer.draw(points, np.arange(len(points)).reshape(-1, 3))
-    return buffer.triangle.reshape(PANEL[::-1])
+    return buffer.nearest.reshape(PANEL[::-1])
 
 
 def draw_nodes(place, triangles, found, nodes, with_edges):
-    """Draws what is seen, coloured by the node of each triangle."""
-    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    lit = np.abs(normals @ LIGHT) / np.maximum(np.linalg.norm(normals, axis=1) * np.linalg.norm(LIGHT), 1e-30)
-    colours = palette(nodes.max() + 1)[nodes] * (0.55 + 0.45 * lit)[:, None]
+    """Draws the visible triangles, coloured by their nodes. Nodes that follow each other differ in colour."""
+    palette = np.array([colorsys.hsv_to_rgb(0.618034 * node % 1, 0.22 + 0.12 * (node % 3), 0.95) for node in range(nodes.max() + 1)])
+    colours = palette[nodes] * (0.55 + 0.45 * light_on(normals_of(triangles)))[:, None]
     image = np.where((found >= 0)[..., None], colours[found], 1.0)
     if with_edges:
         image[borders(found)] *= EDGE

@@ -19,7 +19,7 @@ def closing():
 
 
 def tests_of(ist, files):
-    """Returns the tests of each tick by a search, those of a query that keeps a pair cache, and the leaf pairs."""
+    """Returns by tick the tests of a search, the tests of a query that keeps a pair cache, and the leaf pairs."""
     trees = [ist.load(file) for file in files]
     fresh, kept = ist.Query(*trees), ist.Query(*trees, front_pairs=ROOM)
     pose, rows = np.eye(4), []

@@ -1,26 +1,26 @@
 """The octree, level by level; and one query, frontier by frontier: the pairs of nodes that are alive after each step."""
+import functools
 import struct
 
 import numpy as np
 from matplotlib.collections import EllipseCollection, PolyCollection
 
 from pictures.drawing import NAMES, POLICIES, VOXEL_SIZE, plt, save_small_png
-from pictures.how.view import FIXED, INK, MOVING, PALE, POLICY, SHADES, View
+from pictures.how.view import CUBE, FIXED, INK, MOVING, PALE, POLICY, SHADES, View, face_of_cube
 
 VERSION = 4  # of tree files, whose layout src/ist/tree/tree_file.cpp describes
 SECTIONS = 1 | 2 | 8  # balls, triangles, slabs
-# By how much the table's balls are larger in a query, in voxels, at level 1 and above it, by 36 times the square of the
-# radius in half edges: docs/guarantees.md, Nested bounds, derives it.
+# The excess of the table's balls in a query, in voxels, at level 1 and above it, by 36 times the square of the radius in half edges.
+# docs/guarantees.md, Nested bounds, derives it.
 EXCESS = {27: (0, 0), 54: (0.1413, 0.0749), 81: (0.0732, 0.0455), 96: (0.0991, 0.0665), 108: (0, 0)}
 VOXEL = 4  # mm: the whole octree is seen
-FACE = (0.80, 0.87, 0.94)
 MOVE = np.array([0, 0, -1.5])  # just before the jaws touch
 ROUNDING = 2.0**-24
 INNER, LEAF = (37.5, 53), (12.5, 17)  # pads of balls and of slabs: docs/guarantees.md, Search pose in float
 
 
 class Bounds:
-    """The bounds of one level: balls, and slabs where the policy has them."""
+    """The bounds of one level: balls, and slabs if the policy has them."""
 
     def __init__(self, spheres, slabs=None):
         self.centre, self.radius = spheres[:, :3], spheres[:, 3]
@@ -46,15 +46,10 @@ class Octree:
 
         half = VOXEL_SIZE * 2 ** (self.depth - 1)
         self.bounding_radius = (12**0.5 + 96**0.5) / 6 * half + EXCESS[96][1] * VOXEL_SIZE  # of any policy's: guarantees.md
-        self.made = {}
 
+    @functools.cache
     def bounds(self, policy, level):
-        """Returns the bounds of a level, which are made once."""
-        if (policy, level) not in self.made:
-            self.made[policy, level] = self.make(policy, level)
-        return self.made[policy, level]
-
-    def make(self, policy, level):
+        """Returns the bounds of a level."""
         if policy == "simple":
             return Bounds(self.cubes[level])
         spheres = self.command.spheres(self.file, policy, level)
@@ -84,31 +79,14 @@ def read_tree(file):
     return depth, counts, slabs
 
 
-def nodes_of(command, tree, level):
-    """Returns the centres of the nodes of a level, and the edge of their cubes."""
-    spheres = command.spheres(tree, "simple", level)
-    return spheres[:, :3], 2 * spheres[0, 3] / 3**0.5
-
-
 def draw_cubes(place, view, centres, edge):
     """Draws cubes of one grid, those that are far first, by the faces that look at the eye."""
-    corners = np.array([[[0, 0], [1, 0], [1, 1], [0, 1]]] * 3) - 0.5
-    faces = []
-    for axis in range(3):
-        face = np.full((4, 3), 0.5 * np.sign(view.axes[2][axis]))
-        face[:, [(axis + 1) % 3, (axis + 2) % 3]] = corners[axis]
-        faces.append(view.seen(view.centre + edge * face)[:, :2])
+    faces = [view.seen(view.centre + edge * (face_of_cube(axis, view.near_side(axis)) - 0.5))[:, :2] for axis in range(3)]
     at = view.seen(centres)
     at = at[np.argsort(at[:, 2], kind="stable")]
     polygons = (at[:, None, None, :2] + np.array(faces)).reshape(-1, 4, 2)
-    colours = np.tile([np.array(FACE) * shade for shade in SHADES], (len(at), 1))
+    colours = np.tile([np.array(CUBE) * shade for shade in SHADES], (len(at), 1))
     place.add_collection(PolyCollection(polygons, facecolors=colours, edgecolors=INK, linewidths=0.4))
-
-
-def way_down(levels, view):
-    """Returns the node of each level that holds the leaf nearest to the eye, the leaf last."""
-    leaf = levels[0][0][view.seen(levels[0][0])[:, 2].argmax()]
-    return [int(np.abs(centres - leaf).max(1).argmin()) for centres, _ in levels][::-1]
 
 
 def mask_of(parent, centres, edge):
@@ -121,7 +99,8 @@ def mask_of(parent, centres, edge):
 def draw_octree(command, file):
     tree = command.tree("lower", voxel_size=VOXEL)
     depth = command.answer("info", tree)["depth"]
-    levels = [nodes_of(command, tree, level) for level in range(depth + 1)]
+    # The centres of the nodes of each level, and the edge of their cubes.
+    levels = [(spheres[:, :3], 2 * spheres[0, 3] / 3**0.5) for level in range(depth + 1) for spheres in [command.spheres(tree, "simple", level)]]
     figure = plt.figure(figsize=(11, 7.4))
     places = figure.subplots(2, (depth + 2) // 2).flat
     figure.subplots_adjust(left=0.005, right=0.995, top=0.94, bottom=0.005, wspace=0.02, hspace=0.12)
@@ -130,10 +109,11 @@ def draw_octree(command, file):
     places = figure.axes
     (root,), edge = levels[depth]
     body = (levels[0][0].min(0) + levels[0][0].max(0)) / 2
-    way = way_down(levels, View(places[0], root))
-    for place, level, node in zip(places, range(depth, -1, -1), way):
+    leaf = levels[0][0][View(places[0], root).seen(levels[0][0])[:, 2].argmax()]  # the nearest one to the eye
+    for place, level in zip(places, range(depth, -1, -1)):
         centres, size = levels[level]
-        whole = size > edge / 8  # below, the body is all that is left
+        node = np.abs(centres - leaf).max(1).argmin()
+        whole = size > edge / 8  # below, only the body is left
         view = View(place, root if whole else body)
         draw_cubes(place, view, centres, size)
         view.cube(centres[node] - size / 2, size, MOVING, zorder=3, width=1.8)
@@ -193,7 +173,7 @@ def asked_of(command, files, policy, *options):
 
 
 def held_against_command(command, files, policy, steps):
-    """Fails where the command counts otherwise in all, and returns its answer."""
+    """Fails if the command counts other numbers in all. Returns its answer."""
     answer = asked_of(command, files, policy)
     found = sum(tests for _, tests, _ in steps), len(steps[-1][2][0])
     if found != (answer["sphere_tests"], answer["leaf_pairs"]):
@@ -203,7 +183,7 @@ def held_against_command(command, files, policy, steps):
 
 
 def hold_steps_against_command(command, files, policy, steps):
-    """Fails where a limit of tests ends the command's query at another step than it would by these counts."""
+    """Fails if a limit of tests ends the command's query at another step than these counts tell."""
     spent = 0
     for at, (_, tests, _) in enumerate(steps[:-1]):
         spent += tests

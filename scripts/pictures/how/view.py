@@ -5,7 +5,7 @@ import pathlib
 import numpy as np
 from matplotlib.patches import Circle, Polygon
 
-from pictures.drawing import plt
+from pictures.drawing import eye_axes, normals_of, plt
 
 # As in the plots of perf/REPORT.md.
 POLICY = {"simple": "#888888", "table": "#d95f02", "tight": "#7570b3", "slab": "#1b9e77"}
@@ -16,7 +16,7 @@ plt.rcParams.update({
     "axes.edgecolor": INK, "axes.labelcolor": INK, "xtick.color": INK, "ytick.color": INK, "axes.spines.top": False,
     "axes.spines.right": False, "legend.frameon": False,
 })
-SKIN = (0.93, 0.86, 0.70)
+SKIN, CUBE = (0.93, 0.86, 0.70), (0.80, 0.87, 0.94)
 BACK = np.array([0.55, -0.75, 0.42])  # towards the eye
 LIGHT = np.array([0.15, -0.55, 0.80])
 SHADES = (0.80, 0.90, 1.0)  # of a cube's faces across x, y and z
@@ -31,12 +31,27 @@ def save(figure, file):
     plt.close(figure)
 
 
+def face_of_cube(axis, side):
+    """Returns the corners of a face of the unit cube."""
+    corners = np.zeros((4, 3))
+    corners[:, axis] = side
+    corners[1:3, (axis + 1) % 3] = 1
+    corners[2:4, (axis + 2) % 3] = 1
+    return corners
+
+
+def light_on(normals):
+    """Returns the light on surfaces, which are lit from both sides."""
+    return np.abs(normals @ LIGHT) / np.linalg.norm(LIGHT)
+
+
 class View:
     def __init__(self, place, centre=(0, 0, 0)):
-        back = BACK / np.linalg.norm(BACK)
-        right = np.cross([0, 0, 1], back)
-        right /= np.linalg.norm(right)
-        self.place, self.centre, self.axes = place, np.asarray(centre, float), np.array([right, np.cross(back, right), back])
+        self.place, self.centre, self.axes = place, np.asarray(centre, float), eye_axes(BACK)
+
+    def near_side(self, axis):
+        """Returns the side of a cube that looks at the eye: 0 or 1."""
+        return int(self.axes[2][axis] > 0)
 
     def add(self, patch):
         patch.set_clip_on(False)
@@ -47,15 +62,10 @@ class View:
 
     def cube(self, low, edge, colour, face=None, zorder=1, width=0.9):
         """A cube; with a face colour its faces that look at the eye, else all its edges, those behind dotted."""
-        low = np.asarray(low, float)
         for axis in range(3):
             for side in (0, 1):
-                corner = np.zeros((4, 3))
-                corner[:, axis] = side
-                corner[1:3, (axis + 1) % 3] = 1
-                corner[2:4, (axis + 2) % 3] = 1
-                looks = (self.axes[2][axis] > 0) == (side == 1)
-                points = self.seen(low + edge * corner)[:, :2]
+                looks = side == self.near_side(axis)
+                points = self.seen(low + edge * face_of_cube(axis, side))[:, :2]
                 if face and looks:
                     fill = tuple(SHADES[axis] * np.array(face))
                     self.add(Polygon(points, facecolor=fill, edgecolor=colour, linewidth=width, zorder=zorder + 0.1))
@@ -71,8 +81,7 @@ class View:
     def faces(self, polygons, face, edge, zorder=2):
         """Polygons, those that are far first, lit from both sides."""
         for points in sorted(polygons, key=lambda each: self.seen(each)[:, 2].mean()):
-            normal = np.cross(points[1] - points[0], points[-1] - points[0])
-            lit = abs(normal @ LIGHT) / max(np.linalg.norm(normal) * np.linalg.norm(LIGHT), 1e-30)
+            lit, = light_on(normals_of(points[None, [0, 1, -1]]))
             self.add(Polygon(self.seen(points)[:, :2], facecolor=tuple((0.62 + 0.38 * lit) * np.array(face)),
                              edgecolor=edge, linewidth=0.5, zorder=zorder))
 

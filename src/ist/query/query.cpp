@@ -104,8 +104,9 @@ const char* to_string(Answer answer) noexcept {
 }
 
 const char* to_string(QueryStatus status) noexcept {
-  constexpr std::array kNames = {"done", "invalid-pose", "no-triangles", "manifold-mismatch",
-                                 "busy", "not-prepared", "no-such-body", "no-voxels"};
+  constexpr std::array kNames = {
+      "done",         "invalid-pose", "no-triangles",   "manifold-mismatch", "busy",
+      "not-prepared", "no-such-body", "margin-invalid", "no-such-triangle",  "no-voxels"};
   const auto at = static_cast<std::size_t>(status);
   return at < kNames.size() ? kNames[at] : "unknown";
 }
@@ -231,6 +232,66 @@ TrianglePairsResult Query::triangle_pairs(const Eigen::Isometry3d& pose,
   return result;
 }
 
+NearPairsResult Query::near_pairs(const Eigen::Isometry3d& pose, double margin,
+                                  std::span<NearPair> out, const Budget& budget) noexcept {
+  const ScopedFloatEnvironment environment;
+  detail::QueryState& s = *state_;
+  const detail::Use use(s);
+  if (!use) return {.status = QueryStatus::kBusy, .complete = false};
+  if (!s.triangles) return {.status = QueryStatus::kNoTriangles, .complete = false};
+  if (!detail::is_margin(margin)) return {.status = QueryStatus::kMarginInvalid, .complete = false};
+  const double error = s.triangles->distance_error(margin) + s.triangle_error(pose);
+  const std::optional<detail::Approach> bodies = s.approach(pose, margin + 2 * error);
+  const double off = rotation_error(pose);
+  if (!bodies) {
+    return {.status = QueryStatus::kInvalidPose, .complete = false, .rotation_error = off};
+  }
+  NearPairsResult result{.pad = 2 * error, .sphere_tests = 1, .rotation_error = off};
+  if (!bodies->roots.overlap) {
+    result.found = Found::kClear;
+    return result;
+  }
+  if (s.triangles->is_too_far(bodies->relative)) {
+    result.complete = false;
+    return result;
+  }
+  NearList list;
+  list.begin(out);
+  const TriangleSearch::Near end =
+      s.triangles->near({*project_to_rigid(pose), bodies->relative}, margin + error, budget, list);
+  result.sphere_tests += end.tests;
+  result.complete = end.complete;
+  result.found = end.kept ? Found::kKept : Found::kFresh;
+  result.near_pairs = list.count();
+  result.truncated = result.near_pairs > out.size();
+  return result;
+}
+
+NearPairsResult Query::near_parts(const Eigen::Isometry3d& pose, TrianglePair triangles,
+                                  double margin, std::span<NearPair, kMostNearParts> out) noexcept {
+  const ScopedFloatEnvironment environment;
+  detail::QueryState& s = *state_;
+  const detail::Use use(s);
+  if (!use) return {.status = QueryStatus::kBusy, .complete = false};
+  if (!s.triangles) return {.status = QueryStatus::kNoTriangles, .complete = false};
+  if (!detail::is_margin(margin)) return {.status = QueryStatus::kMarginInvalid, .complete = false};
+  const TriangleMesh &fixed = *s.fixed.triangles(), &moving = *s.moving.triangles();
+  if (triangles.fixed >= fixed.triangles.size() || triangles.moving >= moving.triangles.size()) {
+    return {.status = QueryStatus::kNoSuchTriangle, .complete = false};
+  }
+  const std::optional<Eigen::Isometry3d> rigid = project_to_rigid(pose);
+  const double off = rotation_error(pose);
+  if (!rigid) {
+    return {.status = QueryStatus::kInvalidPose, .complete = false, .rotation_error = off};
+  }
+  const double error = s.triangles->distance_error(margin) + s.triangle_error(pose);
+  NearPairsResult result{.pad = 2 * error, .rotation_error = off};
+  result.near_pairs = ist::near_parts(corners_of(fixed, triangles.fixed),
+                                      MovedTriangles(moving, *rigid)[triangles.moving], triangles,
+                                      margin + error, out);
+  return result;
+}
+
 void Query::forget() noexcept {
   detail::QueryState& s = *state_;
   const detail::Use use(s);
@@ -293,6 +354,7 @@ void detail::QueryState::nearest_triangles(const Eigen::Isometry3d& pose, const 
   result.distance = {apart ? std::max(lower, nearest.lower - off) : 0,
                      apart ? std::min(upper, nearest.upper + off) : 0};
   result.narrowest = apart ? 2 * (end.error + off) : 0;
+  result.nearest = end.pair;
   result.sphere_tests += end.tests;
 }
 

@@ -52,6 +52,13 @@ struct QueryOptions {
   /// bit by bit, but for `sphere_tests`, `distance` and `found`. With a budget of tests every query
   /// searches. A query that a stream or a deadline ended makes nothing for the next one.
   std::size_t front_pairs = 0;
+  /// The most near pairs to keep from one pose to the next, 400 bytes each, and the memory of one
+  /// more search of triangles. 0: none are kept, and every near_pairs() searches.
+  ///
+  /// For a body that moves by less than some half of the margin from query to query. The answers
+  /// are the same, bit by bit, but for `sphere_tests` and `found`. With a budget of tests every
+  /// query searches. Twice the pairs that are near is room enough, and 2,048 is a good number.
+  std::size_t near_pairs = 0;
 };
 
 /// Asks two rigid bodies: are they near each other, do they intersect, how far apart are they, and
@@ -164,6 +171,44 @@ class IST_API Query {
   [[nodiscard]] TrianglePairsResult triangle_pairs(const Eigen::Isometry3d& pose,
                                                    std::span<TrianglePair> out,
                                                    const Budget& budget = {}) noexcept;
+
+  /// Finds all pairs of triangles that are no farther apart than a margin, with their closest
+  /// points. Triangles that intersect are among them. A pair that is listed is no farther apart
+  /// than the margin and the result's `pad`. kNoTriangles if has_triangles() is false,
+  /// kMarginInvalid for a margin that is negative, infinite or NaN.
+  ///
+  /// @param pose   maps moving mesh coordinates to fixed mesh coordinates
+  /// @param margin mesh units
+  /// @param out    takes the pairs, sorted by distance, then by fixed and by moving triangle; if it
+  /// is
+  ///               too short, the nearest of them. Its elements may be written more than once
+  /// @param budget ends the search early: the result then holds the pairs found so far
+  ///
+  /// Bodies may be so far apart that float cannot tell their parts from each other: the result is
+  /// then not complete. Cost: for jaws that touch 0.3 ms with a margin of 0.06 mm; 0.3 µs a pair
+  /// that is near, and 0.1 µs a pair that is nearly so.
+  [[nodiscard]] NearPairsResult near_pairs(const Eigen::Isometry3d& pose, double margin,
+                                           std::span<NearPair> out,
+                                           const Budget& budget = {}) noexcept;
+
+  /// The most pairs of parts that near_parts() lists.
+  static constexpr std::size_t kMostNearParts = 15;
+
+  /// Lists the parts of two triangles that are no farther apart than a margin: each corner above
+  /// the face of the other triangle, and of each two edges the points that are closest. A motion of
+  /// the bodies that keeps all of them apart keeps the triangles apart to first order, as one
+  /// closest point does not. Status as near_pairs(); kNoSuchTriangle for an index out of range.
+  ///
+  /// @param pose      maps moving mesh coordinates to fixed mesh coordinates
+  /// @param triangles by their indices in the meshes
+  /// @param margin    mesh units
+  /// @param out       takes the pairs of parts, in the order of their distances. No two are the
+  /// same
+  ///
+  /// Cost: 0.5 µs.
+  [[nodiscard]] NearPairsResult near_parts(const Eigen::Isometry3d& pose, TrianglePair triangles,
+                                           double margin,
+                                           std::span<NearPair, kMostNearParts> out) noexcept;
 
   /// Finds which body lies inside the other. A body lies inside if all its components do. A
   /// component does if one of its points has a winding number other than 0, and no triangles of the

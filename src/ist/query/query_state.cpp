@@ -62,6 +62,10 @@ std::size_t bytes_of_leaves(const SearchPlan& plan, const QueryOptions& options)
   return bytes;
 }
 
+TriangleOptions triangle_options(const QueryOptions& options) {
+  return {options.workers, options.period, options.near_pairs};
+}
+
 // Returns the bytes that a query with such a plan reserves. Throws kArgumentInvalid for an option
 // out of range.
 std::size_t bytes_with(const std::optional<SearchPlan>& plan, const SphereTree& fixed,
@@ -70,14 +74,15 @@ std::size_t bytes_with(const std::optional<SearchPlan>& plan, const SphereTree& 
     throw Error(ErrorCode::kArgumentInvalid,
                 fmt::format("query option workers is {}: give 1 or 2", options.workers));
   }
-  if (options.front_pairs > kMostItems) {
+  for (const auto& [name, pairs] :
+       {std::pair{"front_pairs", options.front_pairs}, {"near_pairs", options.near_pairs}}) {
+    if (pairs <= kMostItems) continue;
     throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("query option front_pairs is {}: {} is the most", options.front_pairs,
-                            kMostItems));
+                fmt::format("query option {} is {}: {} is the most", name, pairs, kMostItems));
   }
   std::size_t bytes = plan ? bytes_of_leaves(*plan, options) : 0;
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    bytes += TriangleSearch::bytes_for(fixed, moving, options.workers);
+    bytes += TriangleSearch::bytes_for(fixed, moving, triangle_options(options));
   }
   return bytes;
 }
@@ -110,7 +115,7 @@ QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tr
       bytes(bytes_with(make_plan(plan, fixed, moving, policy), fixed, moving, options)) {
   if (plan) reserve_leaves(options);
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    triangles.emplace(fixed, moving, kernels, WorkerOptions{options.workers, options.period});
+    triangles.emplace(fixed, moving, kernels, triangle_options(options));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -30,6 +31,11 @@ struct Approach {
   return {.status = QueryStatus::kInvalidPose,
           .complete = false,
           .rotation_error = rotation_error(pose)};
+}
+
+/// Returns whether a length may be the margin of a query.
+[[nodiscard]] inline bool is_margin(double margin) noexcept {
+  return margin >= 0 && margin < std::numeric_limits<double>::infinity();
 }
 
 /// The memory of a Query, and the steps that its verbs share.

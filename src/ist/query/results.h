@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <chrono>
 #include <compare>
 #include <cstdint>
@@ -72,6 +73,8 @@ enum class QueryStatus : std::uint8_t {
   kBusy,              ///< another thread is using the query; nothing was searched or changed
   kNotPrepared,       ///< of a World: nothing was reserved for this question before
   kNoSuchBody,        ///< of a World: no body has this number
+  kMarginInvalid,     ///< the margin is negative, infinite or no number
+  kNoSuchTriangle,    ///< a mesh has fewer triangles than the index asks for
   kNoVoxels,          ///< the question needs voxels, and a tree was built without them
 };
 /// Returns the status' name, such as "invalid-pose", for logs and tests.
@@ -80,7 +83,7 @@ enum class QueryStatus : std::uint8_t {
 /// How a query found its answer. The answer does not depend on it.
 enum class Found : std::uint8_t {
   kFresh,  ///< by a search at this pose
-  kKept,   ///< among the leaf pairs that were kept from earlier poses
+  kKept,   ///< among the pairs that were kept from earlier poses
   kClear,  ///< without a look: by the bounds of the roots, or a clearance found at an earlier pose
 };
 
@@ -127,6 +130,44 @@ struct TrianglePairsResult {
   double rotation_error = 0;         ///< as QueryResult has it
 };
 
+/// A part of a triangle.
+enum class TrianglePart : std::uint8_t {
+  kCorner0,  ///< the first corner
+  kCorner1,
+  kCorner2,
+  kEdge0,  ///< the edge from the first corner to the second
+  kEdge1,
+  kEdge2,  ///< the edge from the last corner to the first
+  kFace,   ///< the inside
+};
+
+/// Closest points of two triangles, or of parts of them. Points are in fixed coordinates, lengths
+/// in mesh units.
+struct NearPair {
+  TrianglePair triangles = {};       ///< by their indices in the meshes
+  double distance = 0;               ///< 0 if the triangles intersect
+  Eigen::Vector3d fixed_point = {},  ///< on the fixed triangle
+      moving_point = {};             ///< on the moving one; a common point if they intersect
+  TrianglePart fixed_part = TrianglePart::kFace,  ///< the smallest part that holds the point
+      moving_part = TrianglePart::kFace;          ///< likewise
+
+  /// Returns the unit vector from the fixed point to the moving one; 0 if the triangles intersect,
+  /// or if the points are the same.
+  [[nodiscard]] IST_API Eigen::Vector3d direction() const noexcept;
+};
+
+/// The answer of Query::near_pairs.
+struct NearPairsResult {
+  QueryStatus status = QueryStatus::kDone;  ///< other than kDone: nothing was searched
+  bool complete = true;                     ///< the search came to its end: these are all pairs
+  bool truncated = false;                   ///< the span was too short and holds the nearest pairs
+  std::uint64_t near_pairs = 0;             ///< pairs that were found, in the span or not
+  double pad = 0;  ///< no pair is farther apart than the margin and this, mesh units
+  std::uint64_t sphere_tests = 0;  ///< as Budget::tests counts them
+  Found found = Found::kFresh;     ///< the way to the answer, which does not change it
+  double rotation_error = 0;       ///< as QueryResult has it
+};
+
 /// The answer of Query::distance.
 struct DistanceResult {
   QueryStatus status = QueryStatus::kDone;  ///< other than kDone: there is no answer
@@ -137,6 +178,10 @@ struct DistanceResult {
   /// triangles, of those found so far where a budget ended the search; without triangles, twice the
   /// resolution.
   double narrowest = 0;
+  /// The nearest triangles that were found. Their distance lies in the interval. Empty without
+  /// triangles, for bodies so far apart that the roots' interval stays, and if a budget ended the
+  /// search before it measured a pair.
+  std::optional<NearPair> nearest = std::nullopt;
   std::uint64_t sphere_tests = 0;  ///< as Budget::tests counts them
   double rotation_error = 0;       ///< as QueryResult has it
 };

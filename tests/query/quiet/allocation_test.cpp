@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <new>
 
@@ -185,9 +186,13 @@ TEST(Allocations, CertifiedAnswersMakeNone) {
   const SphereTree tree = triangle_tree(icosphere(3, 1), 20);
   for (const int workers : {1, 2}) {
     QueryOptions options;
+    options.near_pairs = 512;
     options.workers = workers;
     Query query(tree, tree, options);
     std::vector<LeafPair> leaf_pairs(1 << 17);
+    std::vector<NearPair> near_pairs(1 << 10);
+    std::array<NearPair, Query::kMostNearParts> parts;
+    std::uint64_t near = 0;
     std::vector<TrianglePair> pairs(1 << 16);
     std::uint64_t triangles = 0;
     EXPECT_EQ(allocations_of([&] {
@@ -195,6 +200,8 @@ TEST(Allocations, CertifiedAnswersMakeNone) {
                   // The first lies on itself: whole numbers decide.
                   const Eigen::Isometry3d pose = shift({0.03 * i, 0, 0});
                   triangles += query.triangle_pairs(pose, pairs).triangle_pairs;
+                  near += query.near_pairs(pose, 0.02, near_pairs).near_pairs;
+                  near += query.near_parts(pose, {0, 1}, 9, parts).near_pairs;
                   static_cast<void>(query.intersects(pose).answer);
                   static_cast<void>(query.distance(pose, 0.01));
                   static_cast<void>(query.leaf_pairs(pose, leaf_pairs, {1000}));
@@ -202,6 +209,7 @@ TEST(Allocations, CertifiedAnswersMakeNone) {
               }),
               0u);
     EXPECT_GT(triangles, 10'000u);
+    EXPECT_GT(near, 1000u);
   }
 }
 

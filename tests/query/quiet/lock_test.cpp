@@ -72,14 +72,20 @@ TEST(Locks, AnExactAnswerAsksForNone) {
   const SphereTree tree = triangle_tree(icosphere(3, 1), 20);
   for (const int workers : {1, 2}) {
     QueryOptions options;
+    options.near_pairs = 512;
     options.workers = workers;
     Query query(tree, tree, options);
+    std::vector<NearPair> near_pairs(1 << 10);
+    std::array<NearPair, Query::kMostNearParts> parts;
+    std::uint64_t near = 0;
     std::vector<TrianglePair> pairs(1 << 16);
     std::uint64_t found = 0;
     EXPECT_EQ(locks_of([&] {
                 for (int i = 0; i < 50; ++i) {
                   const Eigen::Isometry3d pose = shift({0.03 * i, 0, 0});
                   found += query.triangle_pairs(pose, pairs).triangle_pairs;
+                  near += query.near_pairs(pose, 0.02, near_pairs).near_pairs;
+                  near += query.near_parts(pose, {0, 1}, 9, parts).near_pairs;
                   found += query.intersects(pose).answer == Answer::kYes ? 1U : 0U;
                   static_cast<void>(query.distance(pose, 0.01));
                 }
@@ -87,6 +93,7 @@ TEST(Locks, AnExactAnswerAsksForNone) {
               0u)
         << workers << " workers";
     EXPECT_GT(found, 1000u);
+    EXPECT_GT(near, 1000u);
   }
 }
 
@@ -103,6 +110,7 @@ TEST(Locks, AnExactAnswerAsksForNone) {
   static_assert(noexcept(query.contacts(pose, manifold, budget)));
   static_assert(noexcept(query.distance(pose, 0.0, budget)));
   static_assert(noexcept(query.triangle_pairs(pose, triangles, budget)));
+  static_assert(noexcept(query.near_pairs(pose, 1, {}, budget)));
   static_assert(noexcept(query.forget()));
   static_assert(noexcept(manifold.points()));
   static_assert(noexcept(manifold.sums()));

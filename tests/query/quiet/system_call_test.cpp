@@ -188,14 +188,16 @@ TEST_F(SystemCalls, CertifiedAnswersMakeNone) {
   EXPECT_EXIT(
       {
         const SphereTree tree = triangle_tree(icosphere(3, 1), 20);
-        Query query(tree, tree);
+        Query query(tree, tree, {.near_pairs = 512});
         std::vector<LeafPair> leaf_pairs(1 << 16);
         std::vector<TrianglePair> pairs(1 << 16);
+        std::vector<NearPair> near(1 << 10);
         std::uint64_t triangles = 0;
         forbid_system_calls();
         for (int i = 0; i < 100; ++i) {
           const Eigen::Isometry3d pose = shift({0.03 * i, 0, 0});
           triangles += query.triangle_pairs(pose, pairs).triangle_pairs;
+          triangles += query.near_pairs(pose, 0.02, near).near_pairs;
           triangles += query.intersects(pose).answer == ist::Answer::kYes ? 1U : 0U;
           static_cast<void>(query.distance(pose, 0.01));
           static_cast<void>(query.leaf_pairs(pose, leaf_pairs, {.tests = 1000}));

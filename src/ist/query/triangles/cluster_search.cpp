@@ -41,6 +41,26 @@ void ClusterSearch::begin(const ClusterPose& pose) noexcept {
            moving_.triangle_count()};
 }
 
+bool ClusterSearch::descend_to_root(float reach, BudgetMeter& meter, int& level,
+                                    LaneNodes& nodes) noexcept {
+  // Above its root the moving tree has a node of one child.
+  Step& top = steps_.back();
+  kernels_.turn_nodes(moving_.bounds(moving_.root_level())[0], step_.pose, top.turned);
+  level = fixed_.root_level();
+  nodes = {top.near.data(), 1};
+  top.near[0] = 0;
+  while (level > moving_.root_level()) {
+    LaneNodes children{};
+    if (!find_children(top, --level, nodes, reach, meter, children)) {
+      note_untested(top, level + 1, nodes);
+      return false;
+    }
+    std::copy_n(children.codes, children.count, top.near.begin());
+    nodes.count = children.count;
+  }
+  return true;
+}
+
 // Lists the lanes that are near some of the nodes.
 bool ClusterSearch::find_near(Step& step, std::uint32_t lanes, int fixed_level, LaneNodes nodes,
                               float reach, BudgetMeter& meter, LaneNodes& found) noexcept {

@@ -61,7 +61,7 @@ class ClusterSearch {
   [[nodiscard]] static std::size_t bytes_for(const TriangleClusters& fixed,
                                              const TriangleClusters& moving) noexcept;
 
- private:
+ protected:
   // The lengths of a step's lists.
   struct Lengths {
     std::size_t bits, near, deeper;
@@ -102,6 +102,9 @@ class ClusterSearch {
   bool find_children(Step& step, int level, LaneNodes parents, float reach, BudgetMeter& meter,
                      LaneNodes& found) const noexcept;
   static Groups by_lanes(LaneNodes pairs, bool most_first) noexcept;
+  // Begins above the moving tree's root, and finds the fixed nodes of the root's level, or of the
+  // fixed root's if that is lower.
+  bool descend_to_root(float reach, BudgetMeter& meter, int& level, LaneNodes& nodes) noexcept;
   void note_untested(const Step& step, int fixed_level, LaneNodes pairs) noexcept;
 
   const TriangleClusters &fixed_, &moving_;
@@ -116,21 +119,9 @@ template <class Visitor>
 bool ClusterSearch::run(BudgetMeter& meter, Visitor& visitor) noexcept {
   measures_rest_ = Visitor::kMeasuresRest;
   nearest_left_ = std::numeric_limits<double>::infinity();
-  // Above its root the moving tree has a node of one child.
-  Step& top = steps_.back();
-  kernels_.turn_nodes(moving_.bounds(moving_.root_level())[0], step_.pose, top.turned);
-  int level = fixed_.root_level();
-  LaneNodes nodes{top.near.data(), 1};
-  top.near[0] = 0;
-  while (level > moving_.root_level()) {
-    LaneNodes children{};
-    if (!find_children(top, --level, nodes, visitor.reach(), meter, children)) {
-      note_untested(top, level + 1, nodes);
-      return false;
-    }
-    std::copy_n(children.codes, children.count, top.near.begin());
-    nodes.count = children.count;
-  }
+  int level = 0;
+  LaneNodes nodes{};
+  if (!descend_to_root(visitor.reach(), meter, level, nodes)) return false;
   return descend(moving_.root_level(), 0, level, nodes, meter, visitor);
 }
 

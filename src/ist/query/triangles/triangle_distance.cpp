@@ -3,66 +3,217 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "ist/base/float_environment.h"
+#include "ist/base/ordered_vector.h"
 
 namespace ist {
 namespace {
 
 using Vector = Eigen::Vector3d;
 
-double dot(const Vector& a, const Vector& b) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
-double squared(const Vector& a) { return dot(a, a); }
+ClosestPoint plain(const Vector& v) { return {v[0], v[1], v[2]}; }
+ClosestTriangle plain(const TriangleCorners& t) { return {plain(t[0]), plain(t[1]), plain(t[2])}; }
+Vector vector(const ClosestPoint& p) { return {p[0], p[1], p[2]}; }
 
-// Edges more nearly parallel than this count as parallel: the closest points of two such edges are
-// then found at an end, and of an edge and a face at an edge, to within that part of an edge.
-constexpr double kParallel = 0x1p-26;
+TrianglePart corner_part(std::size_t k) { return static_cast<TrianglePart>(k % 3); }
+TrianglePart edge_part(std::size_t k) { return static_cast<TrianglePart>(3 + k); }
 
-double to_segment(const Vector& p, const Vector& a, const Vector& b) {
-  const Vector ab = b - a, ap = p - a;
-  const double length = squared(ab);
-  const double t = length > 0 ? std::clamp(dot(ap, ab) / length, 0.0, 1.0) : 0;
-  return squared(ap - t * ab);
+// A point of a triangle, and the smallest part that holds it.
+struct PartPoint {
+  ClosestPoint point;
+  TrianglePart part;
+};
+
+PartPoint corner_point(const ClosestSide& t, std::size_t k) {
+  return {t.corner[k], corner_part(k)};
+}
+// Returns the point of edge k behind `by` of it.
+PartPoint edge_point(const ClosestSide& t, std::size_t k, double by) {
+  if (by == 0) return corner_point(t, k);
+  if (by == 1) return corner_point(t, (k + 1) % 3);
+  return {along(t.corner[k], by, t.edge[k]), edge_part(k)};
 }
 
-// Returns the squared distance between two edges' lines if their common perpendicular meets both
-// edges, else infinity: then an end of one edge is a closest point.
-double between_edges(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
-  const Vector u = b - a, v = d - c, w = c - a;
-  const Vector n = u.cross(v);
-  const double nn = squared(n);
-  if (!(nn > kParallel * kParallel * squared(u) * squared(v))) return HUGE_VAL;
-  const double s = dot(w.cross(v), n), t = dot(w.cross(u), n);
-  if (s < 0 || s > nn || t < 0 || t > nn) return HUGE_VAL;
-  const double height = dot(w, n);
-  return height * height / nn;
+NearPair near_pair(TrianglePair triangles, double square, const PartPoint& a, const PartPoint& b) {
+  return {triangles, std::sqrt(square), vector(a.point), vector(b.point), a.part, b.part};
 }
 
-// Returns the squared distance of a corner from a face if its perpendicular meets the face, else
-// infinity.
-double to_face(const Vector& p, const TriangleCorners& t) {
-  const Vector u = t[1] - t[0], v = t[2] - t[0], n = u.cross(v);
-  const double nn = squared(n);
-  if (!(nn > kParallel * kParallel * squared(u) * squared(v))) return HUGE_VAL;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vector &a = t[i], &b = t[(i + 1) % 3];
-    if (dot((b - a).cross(p - a), n) < 0) return HUGE_VAL;
+// Returns the points of ClosestParts.
+NearPair points_of(const ClosestSide& a, const ClosestSide& b, TrianglePair triangles,
+                   std::size_t parts) {
+  using Parts = ClosestParts;
+  if (parts < Parts::kFaceToCorner) {
+    const ClosestTry tried = try_face(a.corner[parts], b);
+    return near_pair(triangles, tried.square, corner_point(a, parts),
+                     {along(a.corner[parts], tried.first, b.normal), TrianglePart::kFace});
   }
-  const double height = dot(p - t[0], n);
-  return height * height / nn;
+  if (parts < Parts::kEdges) {
+    const std::size_t k = parts - Parts::kFaceToCorner;
+    const ClosestTry tried = try_face(b.corner[k], a);
+    return near_pair(triangles, tried.square,
+                     {along(b.corner[k], tried.first, a.normal), TrianglePart::kFace},
+                     corner_point(b, k));
+  }
+  const std::size_t i = (parts - Parts::kEdges) % 9 / 3, j = (parts - Parts::kEdges) % 3;
+  if (parts < Parts::kCornerToEdge) {
+    const ClosestTry tried = try_edges(a, i, b, j);
+    return near_pair(triangles, tried.square, edge_point(a, i, tried.first),
+                     edge_point(b, j, tried.second));
+  }
+  if (parts < Parts::kEdgeToCorner) {
+    const ClosestTry tried = try_edge(a.corner[i], b, j);
+    return near_pair(triangles, tried.square, corner_point(a, i), edge_point(b, j, tried.first));
+  }
+  const ClosestTry tried = try_edge(b.corner[j], a, i);
+  return near_pair(triangles, tried.square, edge_point(a, i, tried.first), corner_point(b, j));
+}
+
+// Whether a plane across the way between two points certainly parts two triangles. The points need
+// not be the closest: the gap is measured along any vector. Coordinates are taken from one of the
+// points, so that they are as small as the triangles.
+bool surely_apart(const TriangleCorners& a, const TriangleCorners& b, const NearPair& pair) {
+  constexpr double kRounding = 0x1p-48;
+  const Vector way = pair.moving_point - pair.fixed_point;
+  double first = -HUGE_VAL, second = HUGE_VAL, size = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector p = a[k] - pair.fixed_point, q = b[k] - pair.fixed_point;
+    first = std::max(first, dot_in_order(p, way));
+    second = std::min(second, dot_in_order(q, way));
+    size = std::max({size, p.cwiseAbs().maxCoeff(), q.cwiseAbs().maxCoeff()});
+  }
+  return second - first > kRounding * size * way.cwiseAbs().maxCoeff();
+}
+
+// A point in which an edge meets a plane, and how deep it lies in the triangle of that plane, as a
+// part of its size.
+struct Crossing {
+  PartPoint on_edge;
+  double depth;
+};
+
+// Returns where edge k of `t` meets the plane of `face`; nothing if both ends are on one side.
+std::optional<Crossing> crossing(const ClosestSide& t, std::size_t k, const ClosestSide& face) {
+  const double from = dot(t.corner[k] - face.corner[0], face.normal);
+  const double to = dot(t.corner[(k + 1) % 3] - face.corner[0], face.normal);
+  if (!face.flat || from * to > 0 || from == to) return std::nullopt;
+  const PartPoint at = edge_point(t, k, from / (from - to));
+  double depth = HUGE_VAL;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double side = dot(cross(face.edge[i], at.point - face.corner[i]), face.normal);
+    depth = std::min(depth, side / face.area);
+  }
+  return Crossing{at, depth};
+}
+
+// Returns a common point of two triangles that intersect: the one in which an edge crosses the
+// other triangle farthest from its border, or, of triangles in one plane, their closest points.
+NearPair common_point(const ClosestSide& a, const ClosestSide& b, TrianglePair triangles) {
+  std::optional<Crossing> best;
+  bool edge_of_first = false;
+  for (std::size_t k = 0; k < 6; ++k) {
+    const bool first = k < 3;
+    const std::optional<Crossing> at = first ? crossing(a, k, b) : crossing(b, k - 3, a);
+    if (!at || (best && !(at->depth > best->depth))) continue;
+    best = at;
+    edge_of_first = first;
+  }
+  // Beside the border by more than rounding, no edge crosses: the triangles lie in one plane.
+  if (!best || best->depth < -kParallel) {
+    NearPair pair = points_of(a, b, triangles, ClosestFound(a, b).parts);
+    pair.distance = 0;
+    pair.moving_point = pair.fixed_point;
+    return pair;
+  }
+  const PartPoint in_face{best->on_edge.point, TrianglePart::kFace};
+  return edge_of_first ? near_pair(triangles, 0, best->on_edge, in_face)
+                       : near_pair(triangles, 0, in_face, best->on_edge);
 }
 
 }  // namespace
 
+Vector NearPair::direction() const noexcept {
+  const ScopedFloatEnvironment environment;
+  const Vector way = difference(moving_point, fixed_point);
+  const double length = length_in_order(way);
+  return distance > 0 && length > 0 ? scaled(1 / length, way) : Vector(0, 0, 0);
+}
+
 double distance_squared(const TriangleCorners& a, const TriangleCorners& b) noexcept {
-  double least = HUGE_VAL;
+  const ClosestTriangle first = plain(a), second = plain(b);
+  return ClosestFound(ClosestSide(first), ClosestSide(second)).square;
+}
+
+NearPair closest_points(const TriangleCorners& a, const TriangleCorners& b,
+                        TrianglePair triangles) noexcept {
+  const ClosestTriangle first = plain(a), second = plain(b);
+  return closest_points(a, b, triangles,
+                        ClosestFound(ClosestSide(first), ClosestSide(second)).parts);
+}
+
+NearPair closest_points(const TriangleCorners& a, const TriangleCorners& b, TrianglePair triangles,
+                        std::size_t parts) noexcept {
+  const ClosestTriangle first = plain(a), second = plain(b);
+  const ClosestSide of_a(first), of_b(second);
+  const NearPair pair = points_of(of_a, of_b, triangles, parts);
+  if (surely_apart(a, b, pair) || !triangles_meet(a, b)) return pair;
+  return common_point(of_a, of_b, triangles);
+}
+
+std::size_t near_parts(const TriangleCorners& a, const TriangleCorners& b, TrianglePair triangles,
+                       double enough, std::span<NearPair, Query::kMostNearParts> out) noexcept {
+  using Parts = ClosestParts;
+  const ClosestTriangle first = plain(a), second = plain(b);
+  const ClosestSide of_a(first), of_b(second);
+  std::size_t count = 0;
+  const auto add = [&](std::size_t parts) {
+    const NearPair pair = points_of(of_a, of_b, triangles, parts);
+    if (!(pair.distance <= enough)) return;
+    const auto end = out.begin() + static_cast<std::ptrdiff_t>(count);
+    // Corners are found by several edges, with roundings of their own.
+    const auto same = std::find_if(out.begin(), end, [&](const NearPair& other) {
+      return other.fixed_part == pair.fixed_part && other.moving_part == pair.moving_part;
+    });
+    if (same != end && !(pair.distance < same->distance)) return;
+    if (same == end) ++count;
+    auto at = same;  // the pair goes there, or before
+    for (; at != out.begin() && pair.distance < (at - 1)->distance; --at) *at = *(at - 1);
+    *at = pair;
+  };
+  for (std::size_t k = 0; k < 6; ++k) {
+    const ClosestTry tried = k < Parts::kFaceToCorner ? try_face(of_a.corner[k], of_b)
+                                                      : try_face(of_b.corner[k - 3], of_a);
+    if (tried.square < HUGE_VAL) add(k);
+  }
   for (std::size_t i = 0; i < 3; ++i) {
-    least = std::min({least, to_face(a[i], b), to_face(b[i], a)});
     for (std::size_t j = 0; j < 3; ++j) {
-      const Vector &p = a[i], &q = a[(i + 1) % 3], &r = b[j], &s = b[(j + 1) % 3];
-      least =
-          std::min({least, between_edges(p, q, r, s), to_segment(p, r, s), to_segment(r, p, q)});
+      // The closest points of two edges lie inside both, or at an end of one.
+      const std::size_t next_i = (i + 1) % 3, next_j = (j + 1) % 3;
+      std::size_t best = Parts::kEdges + 3 * i + j;
+      double square = try_edges(of_a, i, of_b, j).square;
+      const auto take = [&](std::size_t parts, double tried) {
+        if (!(tried < square)) return;
+        square = tried;
+        best = parts;
+      };
+      take(Parts::kCornerToEdge + 3 * i + j, try_edge(of_a.corner[i], of_b, j).square);
+      take(Parts::kCornerToEdge + 3 * next_i + j, try_edge(of_a.corner[next_i], of_b, j).square);
+      take(Parts::kEdgeToCorner + 3 * i + j, try_edge(of_b.corner[j], of_a, i).square);
+      take(Parts::kEdgeToCorner + 3 * i + next_j, try_edge(of_b.corner[next_j], of_a, i).square);
+      add(best);
     }
   }
-  return least;
+  return count;
+}
+
+PlainMove plain_move(const Eigen::Isometry3d& pose) noexcept {
+  PlainMove move;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) move.rotation[i][j] = pose(i, j);
+    move.translation[i] = pose(i, 3);
+  }
+  return move;
 }
 
 double box_distance_squared(const TriangleCorners& a, const TriangleCorners& b) noexcept {
@@ -82,20 +233,20 @@ bool surely_farther(const TriangleCorners& a, const TriangleCorners& b, double d
   // Returns the corner of a triangle that is farthest against `v`, a support point of the Minkowski
   // difference.
   const auto farthest_against = [](const TriangleCorners& t, const Vector& v) {
-    const double x = dot(t[0], v), y = dot(t[1], v), z = dot(t[2], v);
+    const double x = dot_in_order(t[0], v), y = dot_in_order(t[1], v), z = dot_in_order(t[2], v);
     return x <= y ? (x <= z ? t[0] : t[2]) : (y <= z ? t[1] : t[2]);
   };
   Vector v = ((a[0] + a[1]) + a[2]) / 3 - ((b[0] + b[1]) + b[2]) / 3;
   for (int look = 0; look < kLooks; ++look) {
     const Vector w = farthest_against(a, v) - farthest_against(b, -v);
-    const double along = dot(v, w), length = squared(v);
+    const double along = dot_in_order(v, w), length = square_in_order(v);
     // Every difference of points is at least as far along v as w, and so is the one nearest to the
     // origin.
     if (along > 0 && along * along > distance * distance * length * kRounding) return true;
     const Vector step = w - v;
-    const double t = squared(step);
+    const double t = square_in_order(step);
     if (!(t > 0)) return false;
-    v += std::clamp(-dot(v, step) / t, 0.0, 1.0) * step;
+    v += std::clamp(-dot_in_order(v, step) / t, 0.0, 1.0) * step;
   }
   return false;
 }

@@ -209,7 +209,7 @@ NearestBeam::NearestBeam(const TriangleClusters& fixed, const TriangleClusters& 
 }  // namespace
 
 TriangleSearch::TriangleSearch(const SphereTree& fixed, const SphereTree& moving,
-                               const Kernels& kernels, const WorkerOptions& options)
+                               const Kernels& kernels, const TriangleOptions& options)
     : fixed_(fixed),
       moving_(moving),
       fixed_clusters_(parts_of(fixed).triangles->clusters),
@@ -221,6 +221,10 @@ TriangleSearch::TriangleSearch(const SphereTree& fixed, const SphereTree& moving
       list_(kSorted) {
   if (options.workers == 2) {
     shared_.emplace(fixed_clusters_, moving_clusters_, kernels_, options.period);
+  }
+  if (options.near_pairs > 0) {
+    near_.emplace(*fixed.triangles(), *moving.triangles(), fixed_clusters_, moving_clusters_,
+                  kernels_, options.near_pairs);
   }
 }
 
@@ -291,9 +295,13 @@ TriangleSearch::Nearest TriangleSearch::nearest(const TrianglePose& pose, double
                                                 const Budget& budget,
                                                 DistanceInterval& distance) noexcept {
   const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
+  const auto closest = [&](TriangleIds ids) {
+    return closest_points(corners_of(meshes.fixed, ids.fixed), meshes.moving[ids.moving],
+                          {ids.fixed, ids.moving});
+  };
   if (still_meet(meshes, budget)) {
     distance = {0, 0};
-    return {{true, 1}, 0};
+    return {{true, 1}, 0, closest(*met_)};
   }
   search_.begin(cluster_pose(pose));
   NearestPair nearest({search_.step(), kernels_, meshes, memory_, budget}, tolerance, longest_edge_,
@@ -320,7 +328,47 @@ TriangleSearch::Nearest TriangleSearch::nearest(const TrianglePose& pose, double
   if (!complete) lower = std::min(lower, search_.nearest_left());
   const double upper = nearest.ids() ? nearest.distance() + error : distance.upper;
   distance = {std::max(distance.lower, lower), std::min(distance.upper, upper)};
-  return {{complete, meter.spent() - kRootTests}, error};
+  std::optional<NearPair> pair;
+  if (nearest.ids()) pair = closest(*nearest.ids());
+  return {{complete, meter.spent() - kRootTests}, error, pair};
+}
+
+ClusterPose TriangleSearch::cluster_pose(const Eigen::Isometry3d& rigid) const noexcept {
+  return cluster_pose(
+      {rigid, *relative_pose(rigid, parts_of(fixed_).origin, parts_of(moving_).origin)});
+}
+
+TriangleSearch::Near TriangleSearch::near(const TrianglePose& pose, double enough,
+                                          const Budget& budget, NearList& list) noexcept {
+  const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
+  // No two points are farther apart: a float holds it.
+  const double farthest = 2 * (radii() + pose.relative.translation.cwiseAbs().maxCoeff());
+  enough = std::min(enough, farthest);
+  const NearCache::Need need{pose.rigid, enough, distance_error(enough) + moved_error(pose.rigid)};
+  const bool carries = near_ && !budget.has_tests();
+  search_.begin(cluster_pose(pose));
+  NearDecision decision({search_.step(), kernels_, meshes, memory_, budget}, *moving_.triangles(),
+                        plain_move(pose.rigid), enough, list);
+  if (carries && near_->find(need)) {
+    std::uint64_t tests = 0;
+    const bool complete = near_->answer(decision, tests);
+    list.finish();
+    if (!budget.is_past()) prepare_near(need, 0);
+    return {{complete, tests}, true};
+  }
+  NearbyPairs near(decision);
+  BudgetMeter meter(budget, kRootTests);
+  bool complete = search_.run(meter, near);
+  complete = near.finish() && complete;
+  list.finish();
+  const std::uint64_t tests = meter.spent() - kRootTests;
+  if (carries && complete && !budget.is_past()) prepare_near(need, tests);
+  return {{complete, tests}, false};
+}
+
+void TriangleSearch::prepare_near(const NearCache::Need& need, std::uint64_t tests) noexcept {
+  near_->prepare(need, tests, memory_,
+                 [&](const Eigen::Isometry3d& centre) { return cluster_pose(centre); });
 }
 
 // Returns whether the triangles that met last still do. A limit of tests does not ask.
@@ -344,11 +392,14 @@ void TriangleSearch::begin_nearest(BudgetMeter& meter, Visitor& nearest) noexcep
 }
 
 std::size_t TriangleSearch::bytes_for(const SphereTree& fixed, const SphereTree& moving,
-                                      int workers) noexcept {
+                                      const TriangleOptions& options) noexcept {
   const TriangleClusters &of_fixed = parts_of(fixed).triangles->clusters,
                          &of_moving = parts_of(moving).triangles->clusters;
   return ClusterSearch::bytes_for(of_fixed, of_moving) + kSorted * sizeof(TrianglePair) +
-         FoundMemory::bytes() + (workers == 2 ? SharedPairs::bytes_for(of_fixed, of_moving) : 0);
+         FoundMemory::bytes() +
+         (options.workers == 2 ? SharedPairs::bytes_for(of_fixed, of_moving) : 0) +
+         (options.near_pairs > 0 ? NearCache::bytes_for(of_fixed, of_moving, options.near_pairs)
+                                 : 0);
 }
 
 }  // namespace ist

@@ -7,6 +7,8 @@
 
 #include "ist/query/relative_pose.h"
 #include "ist/query/triangles/cluster_search.h"
+#include "ist/query/triangles/near_cache.h"
+#include "ist/query/triangles/near_visitor.h"
 #include "ist/query/triangles/pair_list.h"
 #include "ist/query/triangles/shared_pairs.h"
 #include "ist/query/triangles/triangle_visitors.h"
@@ -15,9 +17,10 @@
 
 namespace ist {
 
-struct WorkerOptions {
+struct TriangleOptions {
   int workers;                      ///< 1 or 2
   std::chrono::nanoseconds period;  ///< as for ResidentWorker::tick
+  std::size_t near_pairs = 0;       ///< room of a NearCache; 0: there is none
 };
 
 /// Two bodies at a pose, for exact questions.
@@ -37,7 +40,7 @@ class TriangleSearch {
  public:
   /// Reserves all memory. Both trees must have triangles. Holds references to both.
   TriangleSearch(const SphereTree& fixed, const SphereTree& moving, const Kernels& kernels,
-                 const WorkerOptions& options);
+                 const TriangleOptions& options);
 
   /// The end of a search, and its cost.
   struct End {
@@ -48,7 +51,8 @@ class TriangleSearch {
     bool found;
   };
   struct Nearest : End {
-    double error;  ///< of a distance of triangles, mesh units
+    double error;                  ///< of a distance of triangles, mesh units
+    std::optional<NearPair> pair;  ///< the nearest that was found
   };
 
   /// Finds all pairs of triangles that intersect; the first of them go into `out`. pair_count()
@@ -66,9 +70,21 @@ class TriangleSearch {
   Nearest nearest(const TrianglePose& pose, double tolerance, const Budget& budget,
                   DistanceInterval& distance) noexcept;
 
+  struct Near : End {
+    bool kept;  ///< a list from earlier poses answered
+  };
+  /// Lists all pairs of triangles no farther apart than `enough` in double, and no others.
+  Near near(const TrianglePose& pose, double enough, const Budget& budget, NearList& list) noexcept;
+  /// Returns the most by which the distance of two triangles that are no farther apart than
+  /// `margin` is wrong in double, mesh units.
+  [[nodiscard]] double distance_error(double margin) const noexcept {
+    return kTriangleDistanceError * (longest_edge_ + margin);
+  }
+
   void forget() noexcept {
     met_.reset();
     nearest_.reset();
+    if (near_) near_->forget();
   }
 
   /// Returns whether the bodies are so far apart, against their sizes, that float cannot tell their
@@ -83,7 +99,7 @@ class TriangleSearch {
   }
   /// Returns the bytes that a search of these trees reserves, with one worker or two.
   [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed, const SphereTree& moving,
-                                             int workers) noexcept;
+                                             const TriangleOptions& options) noexcept;
 
  private:
   struct Witness {
@@ -94,7 +110,9 @@ class TriangleSearch {
     return fixed_.bounding_radius() + moving_.bounding_radius();
   }
   [[nodiscard]] ClusterPose cluster_pose(const TrianglePose& pose) const noexcept;
+  [[nodiscard]] ClusterPose cluster_pose(const Eigen::Isometry3d& rigid) const noexcept;
   [[nodiscard]] bool still_meet(const Meshes& meshes, const Budget& budget) const noexcept;
+  void prepare_near(const NearCache::Need& need, std::uint64_t tests) noexcept;
   template <class Visitor>
   void begin_nearest(BudgetMeter& meter, Visitor& nearest) noexcept;
 
@@ -106,6 +124,7 @@ class TriangleSearch {
   PairList list_;
   FoundMemory memory_;
   std::optional<SharedPairs> shared_;
+  std::optional<NearCache> near_;
   std::optional<TriangleIds> met_;
   std::optional<Witness> nearest_;
 };
