@@ -211,6 +211,10 @@ TEST(TrianglePairs, AreTheSameWithVoxelsAndWithout) {
         EXPECT_EQ(query.intersects(pose).answer,
                   wanted.empty() ? ist::Answer::kNo : ist::Answer::kYes);
         EXPECT_TRUE(query.intersects(pose).complete);
+        std::vector<NearPair> near(1 << 16);
+        const NearPairsResult found = query.near_pairs(pose, 0, near);
+        EXPECT_EQ(found.status, QueryStatus::kDone);
+        EXPECT_GE(found.near_pairs, wanted.size());
       }
     });
     touching += wanted.empty() ? 0U : 1U;
