@@ -18,6 +18,7 @@ if ! /usr/bin/python3 -c 'import build, setuptools, wheel' 2>/dev/null; then
 fi
 mkdir -p "$build"
 build=$(cd "$build" && pwd)
+echo "python_packages: builds the library and both packages, up to 10 minutes; the logs are $build/{configure,build,packages}.log" >&2
 cmake --preset python -B "$build" "$@" >"$build/configure.log" || { cat "$build/configure.log"; exit 1; }
 cmake --build "$build" --target ist_loop_shared >"$build/build.log" || { cat "$build/build.log"; exit 1; }
 

@@ -34,7 +34,9 @@ try {
       page = [];
     let commit;
     for (let round = 0; round < rounds; ++round) {
-      const lines = ist(...question.split(' '), '--move', `0,0,${dz}`).trimEnd().split('\n');
+      const lines = ist(...question.split(' '), '--move', `0,0,${dz}`)
+        .trimEnd()
+        .split('\n');
       const [header, line] = lines.map((text) => JSON.parse(text));
       commit = header.commit;
       native.push(line.microseconds_median);
@@ -48,7 +50,12 @@ try {
   const middle = median(rows.map(({native, page}) => page / native));
   const at = rows.find(({native, page}) => page / native === middle);
   const processor = /model name\s*: (.*)/.exec(readFileSync('/proc/cpuinfo', 'utf8'))?.[1] ?? 'unknown';
-  const figure = {ratio: Number(middle.toFixed(1)), native_microseconds: Number(at.native.toFixed(1)), machine: processor, commit: at.commit};
+  const figure = {
+    ratio: Number(middle.toFixed(1)),
+    native_microseconds: Number(at.native.toFixed(1)),
+    machine: processor,
+    commit: at.commit,
+  };
   writeFileSync(path.join(root, 'src/viewer/page/native_ratio.json'), `${JSON.stringify(figure, null, 2)}\n`);
 } finally {
   rmSync(folder, {recursive: true});

@@ -1,12 +1,9 @@
 #include "simd/dispatch.h"
 
-#include <fmt/format.h>
-
 #include <cstdlib>
 #include <string>
-#include <vector>
 
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 
 namespace ist {
 
@@ -33,9 +30,9 @@ const Kernels& select_kernels(std::string_view target) {
     names += names.empty() ? "" : ", ";
     names += kernels.target;
   }
-  throw Error(ErrorCode::kTargetMissing,
-              fmt::format("{}{}: this processor has no such instruction set: name one of {}",
-                          target.empty() ? "IST_TARGET=" : "target ", wanted, names));
+  throw_error(ErrorCode::kTargetMissing,
+              "{}{}: this processor has no such instruction set: name one of {}",
+              target.empty() ? "IST_TARGET=" : "target ", wanted, names);
 }
 
 }  // namespace ist

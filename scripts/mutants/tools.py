@@ -8,7 +8,8 @@ MUTANTS = [
     # Recommended voxel sizes.
     ("advice-breaks-its-goal", "a size a tenth beyond the limit is recommended", [("voxel_advice.h", "return value(measure) <= limit;",
      "return value(measure) <= 1.1 * limit;")], ["advise_test"]),
-    ("advice-far-from-best", "no size between the four is tried", [("voxel_advice.cpp", "kBetween = 3;", "kBetween = 0;")], ["advise_test"]),
+    ("advice-far-from-best", "no size between the five is tried", [("voxel_advice.cpp", "kBetween = kMostSizes - kSizes;",
+     "kBetween = 0;")], ["advise_test"]),
     ("first-contact-only", "the error of a closing is that of its first sample", [("voxel_advice.cpp", "if (apart.lower > resolution || ",
      "if (apart.lower >= 0 || resolution < 0 || ")], ["advise_test"]),
     # The circuit.

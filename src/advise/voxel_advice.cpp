@@ -160,7 +160,7 @@ std::optional<double> coarsest_size(double fixed_extent, double moving_extent) {
 VoxelAdvice advise_voxel_size(
     const AdviceGoal& goal, double coarsest,
     const std::function<std::optional<SizeMeasure>(double voxel_size)>& measure) {
-  constexpr int kSizes = 5, kBetween = 3;
+  constexpr int kSizes = 5, kBetween = kMostSizes - kSizes;
   const ScopedFloatEnvironment environment;
   const bool coarse_is_safe = goal.of == AdviceGoal::Of::kSlowestQuery;
   VoxelAdvice advice;

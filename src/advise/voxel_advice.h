@@ -82,6 +82,9 @@ struct VoxelAdvice {
   std::optional<double> too_fine;          ///< the last size that could not be built
 };
 
+/// The largest number of voxel sizes that advise_voxel_size() tries.
+inline constexpr int kMostSizes = 8;
+
 /// Tries `coarsest` and four sizes below, each a quarter of the one before, until the goal begins
 /// or ceases to hold. Then tries up to three sizes between both neighbours, by interpolation of the
 /// logarithms. The recommended size was measured to meet the goal. It is within 15 % of the best

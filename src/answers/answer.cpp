@@ -1,7 +1,5 @@
 #include "answers/answer.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <nlohmann/json.hpp>
 

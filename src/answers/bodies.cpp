@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "answers/extents.h"
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/nearest_point.h"
 
 namespace ist::answers {
@@ -43,11 +43,9 @@ void require_triangles(const Bodies& bodies) {
   for (const auto& [tree, name] :
        {std::pair(&bodies.fixed, &bodies.fixed_name), {&bodies.moving, &bodies.moving_name}}) {
     if (tree->triangles()) continue;
-    throw Error(
-        ErrorCode::kTrianglesMissing,
-        fmt::format("{}: the tree has no triangles: build it without --no-triangles, or name the "
-                    "mesh",
-                    *name));
+    throw_error(ErrorCode::kTrianglesMissing,
+                "{}: the tree has no triangles: build it without --no-triangles, or name the mesh",
+                *name);
   }
 }
 

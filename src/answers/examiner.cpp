@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "answers/extents.h"
+#include "ist/base/counted.h"
 #include "ist/base/pose.h"
 
 namespace ist::answers {
@@ -162,8 +163,8 @@ void Examiner::find_self_intersections(Findings& found) const {
     found.self_intersecting = true;
     if (!matters) continue;
     found.notes.push_back(
-        fmt::format("{} intersects itself in {} pair{} of triangles: inside is by winding numbers",
-                    name_of(moving), pairs, pairs == 1 ? "" : "s"));
+        fmt::format("{} intersects itself in {} of triangles: inside is by winding numbers",
+                    name_of(moving), counted(pairs, "pair")));
   }
 }
 

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
-#include <string>
 #include <system_error>
-#include <vector>
 
 #include "answers/commit.h"
 #include "ist/base/files.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <Eigen/Core>
 #include <optional>
 #include <stdexcept>
@@ -16,8 +18,13 @@ struct Refusal : std::runtime_error {
       : std::runtime_error(option + ": " + why) {}
 };
 
-/// Throws a Refusal if `wrong`.
+/// Throws a Refusal if `wrong`. Its text is formatted only then.
 void refuse_if(bool wrong, const std::string& option, const std::string& why);
+template <typename... Args>
+void refuse_if(bool wrong, const std::string& option, fmt::format_string<const Args&...> why,
+               const Args&... args) {
+  if (wrong) throw Refusal(option, fmt::format(why, args...));
+}
 
 /// Returns the finite numbers of a text. Spaces, line ends, commas and semicolons part them, and
 /// the decimal sign is the point in every locale. Returns nothing if a word is not

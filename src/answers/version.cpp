@@ -19,8 +19,6 @@ constexpr const char* kCompiler = "g++ " __VERSION__;
 
 std::string version_words() { return fmt::format("ist {}, commit {}", IST_VERSION, IST_COMMIT); }
 
-std::string compiler_words() { return kCompiler; }
-
 std::string version_lines() {
   return fmt::format("ist {}\ncommit {}\ncompiler {}\ninstruction sets {}\ntree file version {}",
                      IST_VERSION, IST_COMMIT, kCompiler, target_names(), kTreeFileVersion);

@@ -33,12 +33,9 @@ std::atomic<std::chrono::microseconds>& time_between_reports() noexcept {
   return between;
 }
 
-ist_status read_follower(const Call& call, const ist_progress* given, Follower& follower) {
-  if (given == nullptr) return IST_OK;
-  ist_progress known;
-  if (const ist_status wrong = read_sized(call, "progress", *given, known)) return wrong;
-  if (known.report != nullptr) follower = known;
-  return IST_OK;
+Follower read_follower(Call& call, const ist_progress* given) {
+  const ist_progress known = read_sized(call, "progress", given);
+  return known.report != nullptr ? Follower(known) : std::nullopt;
 }
 
 bool followed(const Follower& follower, const std::function<void(const Proceed&)>& work) {
@@ -74,10 +71,9 @@ bool followed(const Follower& follower, Progress& progress, unsigned stages,
   return run_beside(*follower, work, part, [&] { progress.stop(); });
 }
 
-ist_status cancelled(const Call& call) {
-  return call.fail(
-      IST_CANCELLED,
-      "progress->report returned another number than 0: the call was ended as it asked");
+void cancelled(Call& call) {
+  call.fail(IST_CANCELLED,
+            "progress->report returned another number than 0: the call was ended as it asked");
 }
 
 }  // namespace ist::capi

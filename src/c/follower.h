@@ -15,8 +15,7 @@ namespace ist::capi {
 using Follower = std::optional<ist_progress>;
 
 /// Converts a caller's progress. NULL, and one without a function, leave nobody.
-[[nodiscard]] IST_LOOP_API ist_status read_follower(const Call& call, const ist_progress* given,
-                                                    Follower& follower);
+[[nodiscard]] IST_LOOP_API Follower read_follower(Call& call, const ist_progress* given);
 
 /// Returns the time between two reports, 20 ms. Tests shorten it, so that short calls report too.
 std::atomic<std::chrono::microseconds>& time_between_reports() noexcept;
@@ -35,6 +34,6 @@ IST_LOOP_API bool followed(const Follower& follower, Progress& progress, unsigne
                            const std::function<void()>& work);
 
 /// Stores the message of a call that its follower ended.
-IST_LOOP_API ist_status cancelled(const Call& call);
+IST_LOOP_API void cancelled(Call& call);
 
 }  // namespace ist::capi

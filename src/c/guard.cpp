@@ -19,39 +19,39 @@ constinit thread_local char message[kLastErrorBytes] = {};
 
 const char* last_error() noexcept { return message; }
 
-ist_status Call::store(ist_status status, std::string_view text) const noexcept {
+void Call::store(ist_status status, std::string_view text) noexcept {
+  if (status_ != IST_OK) return;
+  status_ = status;
   char* to = message;
   for (const std::string_view part : {std::string_view(function_), std::string_view(": "), text}) {
     const auto room = static_cast<std::size_t>(message + kLastErrorBytes - 1 - to);
     to = std::copy_n(part.data(), std::min(part.size(), room), to);
   }
   *to = '\0';
-  return status;
 }
 
-ist_status Call::store_formatted(ist_status status, fmt::string_view text,
-                                 fmt::format_args args) const {
+void Call::store_formatted(ist_status status, fmt::string_view text, fmt::format_args args) {
   char buffer[kLastErrorBytes];
   const auto end = fmt::vformat_to_n(buffer, kLastErrorBytes, text, args).out;
-  return store(status, {buffer, static_cast<std::size_t>(end - buffer)});
+  store(status, {buffer, static_cast<std::size_t>(end - buffer)});
 }
 
-ist_status Call::fail_by_exception() const noexcept {
+void Call::fail_by_exception() noexcept {
   constexpr const char* kNoMemory = "not enough memory: request less, or free unused objects";
   try {
     throw;
   } catch (const Error& error) {
-    return store(status_of(error.code()), error.what());
+    store(status_of(error.code()), error.what());
   } catch (const std::bad_alloc&) {
-    return store(IST_OUT_OF_MEMORY, kNoMemory);
+    store(IST_OUT_OF_MEMORY, kNoMemory);
   } catch (const std::length_error&) {  // from a vector beyond its largest size
-    return store(IST_OUT_OF_MEMORY, kNoMemory);
+    store(IST_OUT_OF_MEMORY, kNoMemory);
   } catch (const std::system_error& error) {
-    return store(IST_SYSTEM_ERROR, error.what());
+    store(IST_SYSTEM_ERROR, error.what());
   } catch (const std::exception& error) {
-    return store(IST_INTERNAL_ERROR, error.what());
+    store(IST_INTERNAL_ERROR, error.what());
   } catch (...) {
-    return store(IST_INTERNAL_ERROR, "unknown exception: report this bug");
+    store(IST_INTERNAL_ERROR, "unknown exception: report this bug");
   }
 }
 

@@ -32,9 +32,10 @@ ist_status check(std::uint64_t handle, HandleKind kind) noexcept {
 
 }  // namespace
 
-ist_status fail_by_handle(const Call& call, ist_status status, const char* argument,
-                          const char* kind) {
+void fail_by_handle(Call& call, ist_status status, const char* argument, const char* kind) {
   switch (status) {
+    case IST_OK:
+      return;
     case IST_NULL_ARGUMENT:
       return call.fail(status, "{} is NULL: pass a {}", argument, kind);
     case IST_NOT_A_HANDLE:

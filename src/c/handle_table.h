@@ -70,21 +70,29 @@ class IST_LOOP_API HandleTable {
 
 static_assert(sizeof(void*) == sizeof(std::uint64_t), "a handle has the size of a pointer");
 
-// The type T of an object declares `using Handle`, its opaque C type; kKind; kUse; kName.
+/// The base of an object's type: the opaque C type of its handle, its kind and its use.
+template <typename CHandle, HandleKind kOfKind, HandleUse kOfUse>
+struct OfHandle {
+  using Handle = CHandle;
+  static constexpr HandleKind kKind = kOfKind;
+  static constexpr HandleUse kUse = kOfUse;
+  /// The argument's name in C, and the object's in messages.
+  static constexpr const char* kName = std::array{
+      "mesh", "tree", "query", "servo", "world", "sweep"}[static_cast<std::size_t>(kOfKind) - 1];
+};
 
 template <typename Handle>
 [[nodiscard]] std::uint64_t number_of(const Handle* handle) noexcept {
   return reinterpret_cast<std::uintptr_t>(handle);
 }
 
-/// Stores the message for an invalid handle, passed as `argument`, and returns the status.
-IST_LOOP_API ist_status fail_by_handle(const Call& call, ist_status status, const char* argument,
-                                       const char* kind);
+/// Fails with the message for an invalid handle, passed as `argument`. IST_OK does nothing.
+IST_LOOP_API void fail_by_handle(Call& call, ist_status status, const char* argument,
+                                 const char* kind);
 
 /// Moves a new object into the handle table and writes its handle to `out`.
 template <typename T>
-[[nodiscard]] ist_status give(const Call& call, std::unique_ptr<T> object,
-                              typename T::Handle** out) {
+void give(Call& call, std::unique_ptr<T> object, typename T::Handle** out) {
   const std::uint64_t handle = handles().insert(
       T::kKind, object.get(), [](void* taken) noexcept { delete static_cast<T*>(taken); });
   if (handle == 0) return fail_by_handle(call, IST_TOO_MANY_HANDLES, "", T::kName);
@@ -92,40 +100,41 @@ template <typename T>
   // The pointer is a number, never an address.
   // NOLINTNEXTLINE(performance-no-int-to-ptr)
   *out = reinterpret_cast<typename T::Handle*>(static_cast<std::uintptr_t>(handle));
-  return IST_OK;
 }
 
-/// Keeps the object of a handle alive during a call.
+/// Keeps the object of a handle alive during a call. A call that failed before gets no object.
 template <typename T>
 class Held {
  public:
-  Held(const Call& call, const char* argument, const typename T::Handle* handle)
-      : handle_(number_of(handle)), taken_(handles().take(handle_, T::kKind, T::kUse)) {
-    if (taken_.status != IST_OK) fail_by_handle(call, taken_.status, argument, T::kName);
+  Held(Call& call, const char* argument, const typename T::Handle* handle)
+      : handle_(number_of(handle)) {
+    if (call.status() != IST_OK) return;
+    const HandleTable::Taken taken = handles().take(handle_, T::kKind, T::kUse);
+    fail_by_handle(call, taken.status, argument, T::kName);
+    object_ = static_cast<T*>(taken.object);
   }
   ~Held() {
-    if (taken_.status == IST_OK) handles().give_back(handle_);
+    if (object_ != nullptr) handles().give_back(handle_);
   }
   Held(const Held&) = delete;
   Held& operator=(const Held&) = delete;
 
-  /// IST_OK, or the error; the message is then stored.
-  [[nodiscard]] ist_status status() const noexcept { return taken_.status; }
-  [[nodiscard]] T* operator->() const noexcept { return static_cast<T*>(taken_.object); }
-  [[nodiscard]] T& operator*() const noexcept { return *static_cast<T*>(taken_.object); }
+  /// Whether there is an object. If not, the call has failed.
+  explicit operator bool() const noexcept { return object_ != nullptr; }
+  [[nodiscard]] T* operator->() const noexcept { return object_; }
+  [[nodiscard]] T& operator*() const noexcept { return *object_; }
 
  private:
   std::uint64_t handle_;
-  HandleTable::Taken taken_;
+  T* object_ = nullptr;
 };
 
 /// Implements every ..._free.
 template <typename T>
 [[nodiscard]] ist_status give_back(const char* function, typename T::Handle* handle) noexcept {
-  return guarded(function, [&](const Call& call) -> ist_status {
-    if (handle == nullptr) return IST_OK;
-    const ist_status status = handles().remove(number_of(handle), T::kKind);
-    return status == IST_OK ? status : fail_by_handle(call, status, T::kName, T::kName);
+  return guarded(function, [&](Call& call) {
+    if (handle == nullptr) return;
+    fail_by_handle(call, handles().remove(number_of(handle), T::kKind), T::kName, T::kName);
   });
 }
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <span>
 
 #include "c/objects.h"
@@ -22,7 +21,7 @@ static_assert(sizeof(ist_triangle_pair) == sizeof(TrianglePair) &&
 static_assert(static_cast<int>(Found::kFresh) == IST_FOUND_FRESH &&
               static_cast<int>(Found::kKept) == IST_FOUND_KEPT &&
               static_cast<int>(Found::kClear) == IST_FOUND_CLEAR);
-static_assert(answer_of(Answer::kUnknown) == IST_ANSWER_UNKNOWN &&
+static_assert(answer_of(Answer::kUnknown) == IST_ANSWER_UNKNOWN && IST_ANSWER_UNKNOWN == 0 &&
               answer_of(Answer::kNo) == IST_ANSWER_NO &&
               answer_of(Answer::kNear) == IST_ANSWER_NEAR &&
               answer_of(Answer::kYes) == IST_ANSWER_YES);
@@ -45,13 +44,6 @@ ist_query_result result_of(const QueryResult& found) {
   return result;
 }
 
-// Clears each struct that can be cleared, even if the other one is invalid.
-ist_status clear_both(const Call& call, ist_contact_sums* sums, ist_query_result* result) {
-  const ist_status wrong_sums = sums == nullptr ? IST_OK : clear_sized(call, "sums", sums);
-  const ist_status wrong_result = clear_sized(call, "result", result);
-  return wrong_result != IST_OK ? wrong_result : wrong_sums;
-}
-
 }  // namespace
 }  // namespace ist::capi
 
@@ -60,42 +52,39 @@ using namespace ist::capi;
 ist_status ist_query_leaf_pairs(ist_query* query, const double pose[16], const ist_budget* budget,
                                 ist_leaf_pair* pairs, size_t capacity,
                                 ist_query_result* result) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
-    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
-    if (const ist_status missing = call.need_array("pairs", pairs, capacity)) return missing;
-    ist::Budget allowed;
-    if (const ist_status wrong = read_budget(call, budget, allowed)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "result", result);
+    call.need("pose", pose);
+    call.need_array("pairs", pairs, capacity);
+    ist::Budget allowed = read_budget(call, budget);
     // A budget gives the distance. One without limits counts as a limit that no search reaches.
     if (budget != nullptr && !allowed.has_tests() && !allowed.has_deadline()) --allowed.tests;
     const Held<QueryObject> held(call, "query", query);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const ist::QueryResult found = held->query.leaf_pairs(
         to_isometry(pose), {reinterpret_cast<ist::LeafPair*>(pairs), capacity}, allowed);
-    if (const ist_status wrong = status_of(call, found.status, pose)) return wrong;
+    if (!answered(call, found.status, pose)) return;
     ist_query_result values = result_of(found);
     values.written = std::min<std::uint64_t>(found.leaf_pairs, capacity);
     values.truncated = found.truncated;
     write_sized(values, *result);
-    return IST_OK;
   });
 }
 
 ist_status ist_query_contacts(ist_query* query, const double pose[16], const ist_budget* budget,
                               ist_contact* contacts, size_t capacity, ist_contact_sums* sums,
                               ist_query_result* result) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_both(call, sums, result)) return wrong;
-    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
-    if (const ist_status missing = call.need_array("contacts", contacts, capacity)) return missing;
-    ist::Budget allowed;
-    if (const ist_status wrong = read_budget(call, budget, allowed)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "result", result);
+    if (sums != nullptr) clear_sized(call, "sums", sums);
+    call.need("pose", pose);
+    call.need_array("contacts", contacts, capacity);
+    const ist::Budget allowed = read_budget(call, budget);
     const Held<QueryObject> held(call, "query", query);
-    if (held.status() != IST_OK) return held.status();
-    if (const ist_status wrong = need_contacts(call, *held)) return wrong;
+    if (!held || !gives_contacts(call, *held)) return;
     const ist::QueryResult found =
         held->query.contacts(to_isometry(pose), *held->manifold, allowed);
-    if (const ist_status wrong = status_of(call, found.status, pose)) return wrong;
+    if (!answered(call, found.status, pose)) return;
     const std::span<const ist::Contact> made = held->manifold->points();
     ist_query_result values = result_of(found);
     values.contacts = made.size();
@@ -105,78 +94,64 @@ ist_status ist_query_contacts(ist_query* query, const double pose[16], const ist
                    contacts, contact_of);
     if (sums != nullptr) write_sized(sums_of(held->manifold->sums()), *sums);
     write_sized(values, *result);
-    return IST_OK;
   });
 }
 
 ist_status ist_contact_sums_wrench(const ist_contact_sums* sums, double stiffness, double force[3],
                                    double torque[3]) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
+  return guarded(__func__, [&](Call& call) {
     if (force != nullptr) std::fill_n(force, 3, 0.0);
     if (torque != nullptr) std::fill_n(torque, 3, 0.0);
-    if (const auto missing = call.need({{"sums", sums}, {"force", force}, {"torque", torque}})) {
-      return missing;
-    }
-    ist_contact_sums known;
-    if (const ist_status wrong = read_sized(call, "sums", *sums, known)) return wrong;
-    if (!std::isfinite(stiffness)) {
-      return call.fail(IST_ARGUMENT_INVALID, "stiffness is {}: pass a finite number", stiffness);
-    }
+    call.need("sums", sums);
+    call.need("force", force);
+    call.need("torque", torque);
+    const ist_contact_sums known = read_sized(call, "sums", sums);
+    check_finite(call, "stiffness", stiffness);
+    if (call.status() != IST_OK) return;
     const ist::ScopedFloatEnvironment environment;
     for (int i = 0; i < 3; ++i) {
       force[i] = stiffness * known.spring_force[i];
       torque[i] = stiffness * known.spring_torque[i];
     }
-    return IST_OK;
   });
 }
 
 ist_status ist_query_distance(ist_query* query, const double pose[16], double tolerance,
                               const ist_budget* budget, ist_distance_result* result) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
-    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
-    if (!(tolerance >= 0)) {
-      return call.fail(IST_ARGUMENT_INVALID, "tolerance is {}: pass a number of at least 0",
-                       tolerance);
-    }
-    ist::Budget allowed;
-    if (const ist_status wrong = read_budget(call, budget, allowed)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "result", result);
+    call.need("pose", pose);
+    check_tolerance(call, "tolerance", tolerance);
+    const ist::Budget allowed = read_budget(call, budget);
     const Held<QueryObject> held(call, "query", query);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const ist::DistanceResult found = held->query.distance(to_isometry(pose), tolerance, allowed);
-    if (const ist_status wrong = status_of(call, found.status, pose)) return wrong;
+    if (!answered(call, found.status, pose)) return;
     write_sized({0, found.distance.lower, found.distance.upper, found.sphere_tests, found.complete,
                  0, found.narrowest, found.rotation_error},
                 *result);
-    return IST_OK;
   });
 }
 
 ist_status ist_query_intersects(ist_query* query, const double pose[16], const ist_budget* budget,
                                 int32_t* answer) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"answer", answer}})) return missing;
-    *answer = IST_ANSWER_UNKNOWN;
-    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
-    ist::Budget allowed;
-    if (const ist_status wrong = read_budget(call, budget, allowed)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    call.clear("answer", answer);  // IST_ANSWER_UNKNOWN
+    call.need("pose", pose);
+    const ist::Budget allowed = read_budget(call, budget);
     const Held<QueryObject> held(call, "query", query);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const ist::IntersectionResult found = held->query.intersects(to_isometry(pose), allowed);
-    if (const ist_status wrong = status_of(call, found.status, pose)) return wrong;
+    if (!answered(call, found.status, pose)) return;
     *answer = answer_of(found.answer);
-    return IST_OK;
   });
 }
 
 ist_status ist_rotation_error(const double pose[16], double* error) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"error", error}})) return missing;
-    *error = 0;
-    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
+  return guarded(__func__, [&](Call& call) {
+    call.clear("error", error);
+    if (!call.need("pose", pose) || error == nullptr) return;
     *error = ist::rotation_error(to_isometry(pose));
-    return IST_OK;
   });
 }
 
@@ -184,17 +159,16 @@ ist_status ist_query_triangle_pairs(ist_query* query, const double pose[16],
                                     const ist_budget* budget, ist_triangle_pair* pairs,
                                     size_t capacity,
                                     ist_triangle_pairs_result* result) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
-    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
-    if (const ist_status missing = call.need_array("pairs", pairs, capacity)) return missing;
-    ist::Budget allowed;
-    if (const ist_status wrong = read_budget(call, budget, allowed)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "result", result);
+    call.need("pose", pose);
+    call.need_array("pairs", pairs, capacity);
+    const ist::Budget allowed = read_budget(call, budget);
     const Held<QueryObject> held(call, "query", query);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const ist::TrianglePairsResult found = held->query.triangle_pairs(
         to_isometry(pose), {reinterpret_cast<ist::TrianglePair*>(pairs), capacity}, allowed);
-    if (const ist_status wrong = status_of(call, found.status, pose)) return wrong;
+    if (!answered(call, found.status, pose)) return;
     ist_triangle_pairs_result values{};
     values.pairs = found.triangle_pairs;
     values.written = std::min<std::uint64_t>(found.triangle_pairs, capacity);
@@ -203,15 +177,13 @@ ist_status ist_query_triangle_pairs(ist_query* query, const double pose[16],
     values.complete = found.complete;
     values.rotation_error = found.rotation_error;
     write_sized(values, *result);
-    return IST_OK;
   });
 }
 
 ist_status ist_query_forget(ist_query* query) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
+  return guarded(__func__, [&](Call& call) {
     const Held<QueryObject> held(call, "query", query);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     held->query.forget();
-    return IST_OK;
   });
 }

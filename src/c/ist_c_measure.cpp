@@ -86,16 +86,12 @@ Motion motion_of(const ist_motion& given) {
                        given.along);
 }
 
-ist_status read_options(const Call& call, const ist_occlusion_options* given,
-                        OcclusionOptions& options) {
+OcclusionOptions read_options(Call& call, const ist_occlusion_options* given) {
+  const ist_occlusion_options known = read_sized(call, "options", given);
+  call.need_array("options->limits", known.limits, known.limit_count);
+  OcclusionOptions options;
   options.limits.clear();
-  if (given == nullptr) return IST_OK;
-  ist_occlusion_options known;
-  if (const ist_status wrong = read_sized(call, "options", *given, known)) return wrong;
-  if (const ist_status wrong =
-          call.need_array("options->limits", known.limits, known.limit_count)) {
-    return wrong;
-  }
+  if (call.status() != IST_OK) return options;
   const auto take = [](double value, double& option) {
     if (value != 0) option = value == -1 ? 0 : value;  // a NaN too, which is refused below
   };
@@ -106,19 +102,14 @@ ist_status read_options(const Call& call, const ist_occlusion_options* given,
   take(known.foundation, options.foundation);
   take(known.change, options.change);
   options.limits.assign(known.limits, known.limits + known.limit_count);
-  return IST_OK;
+  return options;
 }
 
-ist_status read_arrays(const Call& call, const char* name, const ist_occlusion_arrays* given,
-                       ist_occlusion_arrays& arrays) {
-  arrays = {};
-  if (given == nullptr) return IST_OK;
-  if (const ist_status wrong = read_sized(call, name, *given, arrays)) return wrong;
-  if (const ist_status missing =
-          call.need_array("arrays->distances", arrays.distances, arrays.distance_capacity)) {
-    return missing;
-  }
-  return call.need_array("arrays->regions", arrays.regions, arrays.region_capacity);
+ist_occlusion_arrays read_arrays(Call& call, const char* name, const ist_occlusion_arrays* given) {
+  const ist_occlusion_arrays arrays = read_sized(call, name, given);
+  call.need_array("arrays->distances", arrays.distances, arrays.distance_capacity);
+  call.need_array("arrays->regions", arrays.regions, arrays.region_capacity);
+  return arrays;
 }
 
 ist_contact_region region_of(const ContactRegion& region) {
@@ -170,13 +161,12 @@ using namespace ist::capi;
 ist_status ist_tree_signed_distance(const ist_tree* tree, const double* points, size_t count,
                                     double reach, const ist_progress* progress,
                                     ist_surface_distance* distances) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need_array("points", points, count)) return missing;
-    if (const ist_status missing = call.need_array("distances", distances, count)) return missing;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    call.need_array("points", points, count);
+    call.need_array("distances", distances, count);
+    const Follower follower = read_follower(call, progress);
     const Held<Tree> held(call, "tree", tree);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     std::vector<Eigen::Vector3d> at(count);
     for (std::size_t i = 0; i < count; ++i) {
       at[i] = Eigen::Vector3d(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
@@ -187,7 +177,6 @@ ist_status ist_tree_signed_distance(const ist_tree* tree, const double* points, 
     });
     if (!whole) return cancelled(call);
     std::transform(found.begin(), found.end(), distances, surface_distance_of);
-    return IST_OK;
   });
 }
 
@@ -195,19 +184,14 @@ ist_status ist_tree_distance_map(const ist_tree* body, const ist_tree* other, co
                                  double reach, const ist_progress* progress,
                                  ist_surface_distance* distances, size_t capacity,
                                  uint64_t* vertices) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"vertices", vertices}})) return missing;
-    *vertices = 0;
-    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
-    if (const ist_status missing = call.need_array("distances", distances, capacity)) {
-      return missing;
-    }
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    call.clear("vertices", vertices);
+    call.need("pose", pose);
+    call.need_array("distances", distances, capacity);
+    const Follower follower = read_follower(call, progress);
     const Held<Tree> held_body(call, "body", body);
-    if (held_body.status() != IST_OK) return held_body.status();
     const Held<Tree> held_other(call, "other", other);
-    if (held_other.status() != IST_OK) return held_other.status();
+    if (!held_other) return;
     const ist::SphereTree& of = held_body->tree;
     std::vector<ist::SurfaceDistance> found;
     const bool whole = followed(follower, [&](const ist::Proceed& proceed) {
@@ -218,7 +202,6 @@ ist_status ist_tree_distance_map(const ist_tree* body, const ist_tree* other, co
     const std::size_t count = std::min(capacity, found.size());
     std::transform(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), distances,
                    surface_distance_of);
-    return IST_OK;
   });
 }
 
@@ -226,50 +209,43 @@ ist_status ist_query_penetration(ist_query* query, const double pose[16], double
                                  const ist_penetration* last, const ist_budget* budget,
                                  const ist_progress* progress,
                                  ist_penetration* result) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
+  return guarded(__func__, [&](Call& call) {
     // Read before the result is cleared: it may be the same struct.
-    ist_penetration known{};
-    const ist_status wrong_last = last == nullptr ? IST_OK : read_sized(call, "last", *last, known);
-    if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
-    if (wrong_last != IST_OK) return wrong_last;
-    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
+    const ist_penetration known = read_sized(call, "last", last);
+    clear_sized(call, "result", result);
+    call.need("pose", pose);
     ist::PenetrationOptions options;
-    if (const ist_status wrong = read_budget(call, budget, options.budget)) return wrong;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    options.budget = read_budget(call, budget);
+    const Follower follower = read_follower(call, progress);
     const ist::Penetration before = penetration_of(known);
     if (last != nullptr) options.last = &before;
     const Held<QueryObject> held(call, "query", query);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     ist::Penetration found;
     const bool whole = followed(follower, [&](const ist::Proceed& proceed) {
       options.proceed = proceed;
       found = ist::penetration(held->query, to_isometry(pose), tolerance, options);
     });
     if (!whole) return cancelled(call);
-    if (found.status == ist::Penetration::Status::kInvalidPose) {
-      return status_of(call, ist::QueryStatus::kInvalidPose, pose);
-    }
+    const bool invalid = found.status == ist::Penetration::Status::kInvalidPose;
+    if (invalid && !answered(call, ist::QueryStatus::kInvalidPose, pose)) return;
     write_sized(penetration_of(found), *result);
-    return IST_OK;
   });
 }
 
 ist_status ist_query_first_contact(ist_query* query, const ist_motion* motion, double tolerance,
                                    const ist_budget* budget, const ist_progress* progress,
                                    ist_first_contact* result) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
-    if (const ist_status missing = call.need({{"motion", motion}})) return missing;
-    ist_motion known;
-    if (const ist_status wrong = read_sized(call, "motion", *motion, known)) return wrong;
-    if (const ist_status missing = call.need({{"motion->from", known.from}})) return missing;
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "result", result);
+    call.need("motion", motion);
+    const ist_motion known = read_sized(call, "motion", motion);
+    call.need("motion->from", known.from);
     ist::FirstContactOptions options;
-    if (const ist_status wrong = read_budget(call, budget, options.budget)) return wrong;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    options.budget = read_budget(call, budget);
+    const Follower follower = read_follower(call, progress);
     const Held<QueryObject> held(call, "query", query);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     ist::FirstContact found;
     const bool whole = followed(follower, [&](const ist::Proceed& proceed) {
       options.proceed = proceed;
@@ -277,7 +253,6 @@ ist_status ist_query_first_contact(ist_query* query, const ist_motion* motion, d
     });
     if (!whole) return cancelled(call);
     write_sized(first_contact_of(found), *result);
-    return IST_OK;
   });
 }
 
@@ -286,26 +261,16 @@ ist_status ist_query_occlusion(ist_query* query, const double pose[16],
                                const ist_occlusion_arrays* fixed_arrays,
                                const ist_occlusion_arrays* moving_arrays, ist_occlusion* fixed,
                                ist_occlusion* moving) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    const ist_status wrong_fixed = clear_sized(call, "fixed", fixed);
-    const ist_status wrong_moving = clear_sized(call, "moving", moving);
-    if (wrong_fixed != IST_OK || wrong_moving != IST_OK) {
-      return wrong_fixed != IST_OK ? wrong_fixed : wrong_moving;
-    }
-    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
-    ist::OcclusionOptions asked;
-    if (const ist_status wrong = read_options(call, options, asked)) return wrong;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
-    ist_occlusion_arrays of_fixed, of_moving;
-    if (const ist_status wrong = read_arrays(call, "fixed_arrays", fixed_arrays, of_fixed)) {
-      return wrong;
-    }
-    if (const ist_status wrong = read_arrays(call, "moving_arrays", moving_arrays, of_moving)) {
-      return wrong;
-    }
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "fixed", fixed);
+    clear_sized(call, "moving", moving);
+    call.need("pose", pose);
+    ist::OcclusionOptions asked = read_options(call, options);
+    const Follower follower = read_follower(call, progress);
+    const ist_occlusion_arrays of_fixed = read_arrays(call, "fixed_arrays", fixed_arrays);
+    const ist_occlusion_arrays of_moving = read_arrays(call, "moving_arrays", moving_arrays);
     const Held<QueryObject> held(call, "query", query);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     ist::Occlusion found;
     const bool whole = followed(follower, [&](const ist::Proceed& proceed) {
       asked.proceed = proceed;
@@ -314,6 +279,5 @@ ist_status ist_query_occlusion(ist_query* query, const double pose[16],
     if (!whole) return cancelled(call);
     give_surface(found.fixed, found.rotation_error, of_fixed, *fixed);
     give_surface(found.moving, found.rotation_error, of_moving, *moving);
-    return IST_OK;
   });
 }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <span>
 
@@ -20,7 +19,7 @@ struct MeshArrays {
 };
 
 template <typename Number>
-ist_status check_counts(const Call& call, const MeshArrays<Number>& arrays) {
+void check_counts(Call& call, const MeshArrays<Number>& arrays) {
   constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
   for (const std::size_t count : {arrays.vertex_count, arrays.triangle_count}) {
     if (count > kMost) {
@@ -29,8 +28,8 @@ ist_status check_counts(const Call& call, const MeshArrays<Number>& arrays) {
                        arrays.triangle_count, kMost);
     }
   }
-  const auto wrong = call.need_array("vertices", arrays.vertices, arrays.vertex_count);
-  return wrong ? wrong : call.need_array("triangles", arrays.triangles, arrays.triangle_count);
+  call.need_array("vertices", arrays.vertices, arrays.vertex_count);
+  call.need_array("triangles", arrays.triangles, arrays.triangle_count);
 }
 
 ist_mesh_info mesh_info_of(const Mesh& mesh) {
@@ -53,10 +52,10 @@ ist_mesh_info mesh_info_of(const Mesh& mesh) {
 
 template <typename Number>
 ist_status create(const char* function, const MeshArrays<Number>& arrays, ist_mesh** out) noexcept {
-  return guarded(function, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"mesh", out}})) return missing;
-    *out = nullptr;
-    if (const ist_status wrong = check_counts(call, arrays)) return wrong;
+  return guarded(function, [&](Call& call) {
+    call.clear("mesh", out);
+    check_counts(call, arrays);
+    if (call.status() != IST_OK) return;
     const ScopedFloatEnvironment environment;  // a denormal float is a normal double
     auto mesh = std::make_unique<Mesh>();
     mesh->mesh.vertices.resize(arrays.vertex_count);
@@ -66,7 +65,7 @@ ist_status create(const char* function, const MeshArrays<Number>& arrays, ist_me
     std::copy_n(arrays.triangles, 3 * arrays.triangle_count,
                 reinterpret_cast<std::uint32_t*>(mesh->mesh.triangles.data()));
     ist::require_valid(mesh->mesh);
-    return give(call, std::move(mesh), out);
+    give(call, std::move(mesh), out);
   });
 }
 
@@ -91,50 +90,43 @@ ist_status ist_mesh_create_float(const float* vertices, size_t vertex_count,
 ist_status ist_mesh_read(const char* path, const ist_progress* progress,
                          ist_mesh** mesh) IST_NOEXCEPT {
   return read_object<Mesh>(__func__, path, progress, mesh,
-                           [](const char* file) { return Mesh{ist::read_mesh(file)}; });
+                           [](const char* file) { return ist::read_mesh(file); });
 }
 
 ist_status ist_mesh_get_info(const ist_mesh* mesh, const ist_progress* progress,
                              ist_mesh_info* info) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_sized(call, "info", info)) return wrong;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "info", info);
+    const Follower follower = read_follower(call, progress);
     const Held<Mesh> held(call, "mesh", mesh);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     ist_mesh_info found{};
     const bool whole =
         followed(follower, [&](const ist::Proceed&) { found = mesh_info_of(*held); });
     if (!whole) return cancelled(call);
     write_sized(found, *info);
-    return IST_OK;
   });
 }
 
 ist_status ist_mesh_get_size(const ist_mesh* mesh, uint64_t* vertices,
                              uint64_t* triangles) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const auto missing = call.need({{"vertices", vertices}, {"triangles", triangles}})) {
-      return missing;
-    }
-    *vertices = *triangles = 0;
+  return guarded(__func__, [&](Call& call) {
+    call.clear("vertices", vertices);
+    call.clear("triangles", triangles);
     const Held<Mesh> held(call, "mesh", mesh);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     *vertices = held->mesh.vertices.size();
     *triangles = held->mesh.triangles.size();
-    return IST_OK;
   });
 }
 
 ist_status ist_mesh_copy(const ist_mesh* mesh, double* vertices, size_t vertex_capacity,
                          uint32_t* triangles, size_t triangle_capacity) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    const ist_status bad_vertices = call.need_array("vertices", vertices, vertex_capacity);
-    if (bad_vertices != IST_OK) return bad_vertices;
-    const ist_status bad_triangles = call.need_array("triangles", triangles, triangle_capacity);
-    if (bad_triangles != IST_OK) return bad_triangles;
+  return guarded(__func__, [&](Call& call) {
+    call.need_array("vertices", vertices, vertex_capacity);
+    call.need_array("triangles", triangles, triangle_capacity);
     const Held<Mesh> held(call, "mesh", mesh);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const ist::TriangleMesh& made = held->mesh;
     for (const auto& vertex :
          std::span(made.vertices).first(std::min(vertex_capacity, made.vertices.size()))) {
@@ -144,7 +136,6 @@ ist_status ist_mesh_copy(const ist_mesh* mesh, double* vertices, size_t vertex_c
          std::span(made.triangles).first(std::min(triangle_capacity, made.triangles.size()))) {
       triangles = std::copy_n(triangle.data(), 3, triangles);
     }
-    return IST_OK;
   });
 }
 

@@ -8,13 +8,13 @@
 using namespace ist::capi;
 
 ist_status ist_jaw_create(int32_t jaw, uint64_t seed, ist_mesh** mesh) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"mesh", mesh}})) return missing;
-    *mesh = nullptr;
+  return guarded(__func__, [&](Call& call) {
+    call.clear("mesh", mesh);
     if (jaw != IST_JAW_LOWER && jaw != IST_JAW_UPPER) {
-      return call.fail(IST_ARGUMENT_INVALID, "jaw is {}: pass IST_JAW_LOWER or IST_JAW_UPPER", jaw);
+      call.fail(IST_ARGUMENT_INVALID, "jaw is {}: pass IST_JAW_LOWER or IST_JAW_UPPER", jaw);
     }
+    if (call.status() != IST_OK) return;
     const ist::Jaw made = jaw == IST_JAW_UPPER ? ist::Jaw::kUpper : ist::Jaw::kLower;
-    return give(call, std::make_unique<Mesh>(Mesh{ist::make_jaw(made, seed)}), mesh);
+    give(call, std::make_unique<Mesh>(ist::make_jaw(made, seed)), mesh);
   });
 }

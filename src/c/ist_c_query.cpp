@@ -9,40 +9,36 @@ constexpr std::uint64_t kMostPairs = std::uint64_t{1} << 26;
 constexpr std::int64_t kMostContacts = 4096;
 constexpr double kMostMargin = 2;
 
-ist_status check_query_options(const Call& call, const ist_query_options& known) {
+void check_query_options(Call& call, const ist_query_options& known) {
   if (!are_spheres(known.spheres)) {
-    return call.fail(IST_ARGUMENT_INVALID, "options->spheres is {}: pass one of IST_SPHERES_...",
-                     known.spheres);
+    call.fail(IST_ARGUMENT_INVALID, "options->spheres is {}: pass one of IST_SPHERES_...",
+              known.spheres);
   }
   if (known.workers < 0 || known.workers > 2) {
-    return call.fail(IST_ARGUMENT_INVALID,
-                     "options->workers is {}: pass 1 or 2, or 0 for the default", known.workers);
+    call.fail(IST_ARGUMENT_INVALID, "options->workers is {}: pass 1 or 2, or 0 for the default",
+              known.workers);
   }
   if (known.period_ns < -1) {
-    return call.fail(
-        IST_ARGUMENT_INVALID,
-        "options->period_ns is {}: pass a number above 0, 0 for 1 ms, or -1 for no pause",
-        known.period_ns);
+    call.fail(IST_ARGUMENT_INVALID,
+              "options->period_ns is {}: pass a number above 0, 0 for 1 ms, or -1 for no pause",
+              known.period_ns);
   }
   if (std::max(known.frontier_pairs, known.front_pairs) > kMostPairs) {
-    return call.fail(IST_ARGUMENT_INVALID,
-                     "options->frontier_pairs is {} and front_pairs is {}: "
-                     "pass at most {}",
-                     known.frontier_pairs, known.front_pairs, kMostPairs);
+    call.fail(IST_ARGUMENT_INVALID,
+              "options->frontier_pairs is {} and front_pairs is {}: pass at most {}",
+              known.frontier_pairs, known.front_pairs, kMostPairs);
   }
   if (known.contacts < -1 || known.contacts > kMostContacts) {
-    return call.fail(
-        IST_ARGUMENT_INVALID,
-        "options->contacts is {}: pass 1 to {}, 0 for the default, or -1 for no contacts",
-        known.contacts, kMostContacts);
+    call.fail(IST_ARGUMENT_INVALID,
+              "options->contacts is {}: pass 1 to {}, 0 for the default, or -1 for no contacts",
+              known.contacts, kMostContacts);
   }
   if (!(known.margin >= 0 && known.margin <= kMostMargin)) {
-    return call.fail(IST_ARGUMENT_INVALID,
-                     "options->margin is {}: pass a number from 0, where surfaces meet, to {} mean "
-                     "voxel sizes",
-                     known.margin, kMostMargin);
+    call.fail(
+        IST_ARGUMENT_INVALID,
+        "options->margin is {}: pass a number from 0, where surfaces meet, to {} mean voxel sizes",
+        known.margin, kMostMargin);
   }
-  return IST_OK;
 }
 
 ist_query_info query_info_of(const QueryObject& query) {
@@ -58,11 +54,11 @@ ist_query_info query_info_of(const QueryObject& query) {
 
 }  // namespace
 
-ist_status read_query_options(const Call& call, const ist_query_options& given,
-                              CQueryOptions& options) {
-  ist_query_options known;
-  if (const ist_status wrong = read_sized(call, "options", given, known)) return wrong;
-  if (const ist_status wrong = check_query_options(call, known)) return wrong;
+CQueryOptions read_query_options(Call& call, const ist_query_options* given) {
+  const ist_query_options known = read_sized(call, "options", given);
+  check_query_options(call, known);
+  CQueryOptions options;
+  if (given == nullptr || call.status() != IST_OK) return options;
   QueryOptions& query = options.query;
   query.policy = policy_of(known.spheres);
   if (known.target != nullptr) query.target = known.target;
@@ -74,11 +70,11 @@ ist_status read_query_options(const Call& call, const ist_query_options& given,
   }
   if (known.contacts < 0) {
     options.manifold.reset();
-    return IST_OK;
+    return options;
   }
   if (known.contacts > 0) options.manifold->points = static_cast<std::size_t>(known.contacts);
   options.manifold->margin = known.margin;
-  return IST_OK;
+  return options;
 }
 
 }  // namespace ist::capi
@@ -87,21 +83,16 @@ using namespace ist::capi;
 
 ist_status ist_query_create(const ist_tree* fixed, const ist_tree* moving,
                             const ist_query_options* options, ist_query** query) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"query", query}})) return missing;
-    *query = nullptr;
-    CQueryOptions asked;
-    if (options != nullptr) {
-      if (const ist_status wrong = read_query_options(call, *options, asked)) return wrong;
-    }
+  return guarded(__func__, [&](Call& call) {
+    call.clear("query", query);
+    const CQueryOptions asked = read_query_options(call, options);
     const Held<Tree> held_fixed(call, "fixed", fixed);
-    if (held_fixed.status() != IST_OK) return held_fixed.status();
     const Held<Tree> held_moving(call, "moving", moving);
-    if (held_moving.status() != IST_OK) return held_moving.status();
-    return give(call,
-                std::make_unique<QueryObject>(held_fixed->tree, held_moving->tree, asked.query,
-                                              asked.manifold),
-                query);
+    if (!held_moving) return;
+    give(call,
+         std::make_unique<QueryObject>(held_fixed->tree, held_moving->tree, asked.query,
+                                       asked.manifold),
+         query);
   });
 }
 

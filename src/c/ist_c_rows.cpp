@@ -1,4 +1,3 @@
-#include <cmath>
 #include <vector>
 
 #include "c/follower.h"
@@ -12,7 +11,6 @@ namespace {
 
 constexpr std::int32_t kAllQuestions = IST_ASK_INTERSECTS | IST_ASK_LEAF_PAIRS | IST_ASK_DISTANCE |
                                        IST_ASK_CONTACTS | IST_ASK_PENETRATION;
-constexpr std::int32_t kMostThreads = 1024;
 
 struct RowsAsked {
   RowQuestions questions;
@@ -21,26 +19,16 @@ struct RowsAsked {
   Follower follower;
 };
 
-ist_status read_rows_options(const Call& call, const ist_rows_options& given, RowsAsked& asked) {
-  ist_rows_options known;
-  if (const ist_status wrong = read_sized(call, "options", given, known)) return wrong;
+RowsAsked read_rows_options(Call& call, const ist_rows_options* given) {
+  const ist_rows_options known = read_sized(call, "options", given);
   if (known.questions <= 0 || (known.questions & ~kAllQuestions) != 0) {
-    return call.fail(IST_ARGUMENT_INVALID, "options->questions is {}: pass a sum of IST_ASK_...",
-                     known.questions);
+    call.fail(IST_ARGUMENT_INVALID, "options->questions is {}: pass a sum of IST_ASK_...",
+              known.questions);
   }
-  if (known.threads < 0 || known.threads > kMostThreads) {
-    return call.fail(IST_ARGUMENT_INVALID,
-                     "options->threads is {}: pass 1 to {}, or 0 for one for each core",
-                     known.threads, kMostThreads);
-  }
-  if (!(known.tolerance >= 0)) {
-    return call.fail(IST_ARGUMENT_INVALID, "options->tolerance is {}: pass a number of at least 0",
-                     known.tolerance);
-  }
-  if (!std::isfinite(known.stiffness)) {
-    return call.fail(IST_ARGUMENT_INVALID, "options->stiffness is {}: pass a finite number",
-                     known.stiffness);
-  }
+  check_threads(call, "options->threads", known.threads);
+  check_tolerance(call, "options->tolerance", known.tolerance);
+  check_finite(call, "options->stiffness", known.stiffness);
+  RowsAsked asked;
   RowQuestions& questions = asked.questions;
   questions.intersects = (known.questions & IST_ASK_INTERSECTS) != 0;
   questions.leaf_pairs = (known.questions & IST_ASK_LEAF_PAIRS) != 0;
@@ -51,7 +39,8 @@ ist_status read_rows_options(const Call& call, const ist_rows_options& given, Ro
   if (known.tests > 0) questions.budget.tests = known.tests;
   asked.threads = static_cast<std::size_t>(known.threads);
   if (known.stiffness != 0) asked.stiffness = known.stiffness;
-  return read_follower(call, known.progress, asked.follower);
+  asked.follower = read_follower(call, known.progress);
+  return asked;
 }
 
 ist_row row_of(const RowNumbers& numbers) noexcept {
@@ -82,17 +71,14 @@ using namespace ist::capi;
 
 ist_status ist_query_rows(ist_query* query, const double* poses, size_t count,
                           const ist_rows_options* options, ist_row* rows) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need_array("rows", rows, count)) return missing;
-    if (const ist_status missing = call.need_array("poses", poses, count)) return missing;
-    if (const ist_status missing = call.need({{"options", options}})) return missing;
-    RowsAsked asked;
-    if (const ist_status wrong = read_rows_options(call, *options, asked)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    call.need_array("rows", rows, count);
+    call.need_array("poses", poses, count);
+    call.need("options", options);
+    const RowsAsked asked = read_rows_options(call, options);
     const Held<QueryObject> held(call, "query", query);
-    if (held.status() != IST_OK) return held.status();
-    if (asked.questions.contacts) {
-      if (const ist_status wrong = need_contacts(call, *held)) return wrong;
-    }
+    if (!held) return;
+    if (asked.questions.contacts && !gives_contacts(call, *held)) return;
     std::vector<Eigen::Isometry3d> at(count);
     for (std::size_t i = 0; i < count; ++i) at[i] = to_isometry(poses + 16 * i);
     ist::QueryOptions further = held->query_options;
@@ -109,6 +95,5 @@ ist_status ist_query_rows(ist_query* query, const double* poses, size_t count,
     });
     if (!whole) return cancelled(call);
     std::copy(made.begin(), made.end(), rows);
-    return IST_OK;
   });
 }

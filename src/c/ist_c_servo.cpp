@@ -12,12 +12,7 @@
 namespace ist::capi {
 namespace {
 
-struct Servo {
-  using Handle = ist_servo;
-  static constexpr HandleKind kKind = HandleKind::kServo;
-  static constexpr HandleUse kUse = HandleUse::kAlone;
-  static constexpr const char* kName = "servo";
-
+struct Servo : OfHandle<ist_servo, HandleKind::kServo, HandleUse::kAlone> {
   Servo(BuiltScene built, const ServoCallbackOptions& options)
       : scene(std::move(built)), callback(*scene.simulation, options) {}
 
@@ -34,30 +29,30 @@ struct OpenOptions {
   Follower follower;
 };
 
-ist_status read_servo_options(const Call& call, const ist_servo_options& given,
-                              OpenOptions& options) {
-  ist_servo_options known;
-  if (const ist_status wrong = read_sized(call, "options", given, known)) return wrong;
+OpenOptions read_servo_options(Call& call, const ist_servo_options* given) {
+  const ist_servo_options known = read_sized(call, "options", given);
   if (known.unit != IST_UNIT_M && known.unit != IST_UNIT_MM) {
-    return call.fail(IST_ARGUMENT_INVALID,
-                     "options->unit is {}: pass IST_UNIT_M or IST_UNIT_MM, the unit of the poses",
-                     known.unit);
+    call.fail(IST_ARGUMENT_INVALID,
+              "options->unit is {}: pass IST_UNIT_M or IST_UNIT_MM, the unit of the poses",
+              known.unit);
   }
   if (known.reserved != 0) {
-    return call.fail(IST_ARGUMENT_INVALID, "options->reserved is {}: set it to 0", known.reserved);
+    call.fail(IST_ARGUMENT_INVALID, "options->reserved is {}: set it to 0", known.reserved);
   }
   if (!(known.query_time_fraction >= 0 && known.query_time_fraction <= 1)) {
-    return call.fail(IST_ARGUMENT_INVALID,
-                     "options->query_time_fraction is {}: pass a fraction of a tick, from 0 to 1",
-                     known.query_time_fraction);
+    call.fail(IST_ARGUMENT_INVALID,
+              "options->query_time_fraction is {}: pass a fraction of a tick, from 0 to 1",
+              known.query_time_fraction);
   }
+  OpenOptions options;
   options.callback.unit = known.unit == IST_UNIT_MM ? 0.001 : 1;
   if (known.query_time_fraction > 0) {
     options.callback.query_time_fraction = known.query_time_fraction;
   }
   if (known.sphere_tests > 0) options.callback.sphere_tests = known.sphere_tests;
   if (known.max_memory > 0) options.max_memory = known.max_memory;
-  return read_follower(call, known.progress, options.follower);
+  options.follower = read_follower(call, known.progress);
+  return options;
 }
 
 // Replaces the scene's device by the caller, and keeps only the mechanics of the scene's device.
@@ -80,10 +75,10 @@ ist_servo_info servo_info_of(const Servo& servo) {
   return info;
 }
 
-ist_status refusal_of(const Call& call, const char* body, ist::ChangeStatus status) {
+void refuse_change(Call& call, const char* body, ist::ChangeStatus status) {
   switch (status) {
     case ist::ChangeStatus::kDone:
-      return IST_OK;
+      return;
     case ist::ChangeStatus::kUnknownBody:
       return call.fail(IST_ARGUMENT_INVALID, "there is no body called {}: pass a name of the scene",
                        body);
@@ -104,20 +99,20 @@ ist_status refusal_of(const Call& call, const char* body, ist::ChangeStatus stat
                        "the options of the servo more",
                        body);
   }
-  return call.fail(IST_INTERNAL_ERROR, "a status without a message");
+  call.fail(IST_INTERNAL_ERROR, "a status without a message");
 }
 
 using Change = ist::ChangeStatus (ServoCallback::*)(std::size_t) noexcept;
 
 ist_status change_servo(const char* function, ist_servo* servo, const char* body, Change change) {
-  return guarded(function, [&](const Call& call) -> ist_status {
+  return guarded(function, [&](Call& call) {
     const Held<Servo> held(call, "servo", servo);
-    if (held.status() != IST_OK) return held.status();
-    if (const ist_status missing = call.need({{"body", body}})) return missing;
+    if (!held) return;
+    if (!call.need("body", body)) return;
     const Simulation& simulation = *held->scene.simulation;
     std::size_t number = 0;
     while (number < simulation.bodies() && simulation.body_name(number) != body) ++number;
-    return refusal_of(call, body, (held->callback.*change)(number));
+    refuse_change(call, body, (held->callback.*change)(number));
   });
 }
 
@@ -128,14 +123,12 @@ using namespace ist::capi;
 
 ist_status ist_servo_open_scene(const char* path, const ist_servo_options* options,
                                 ist_servo** servo) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"servo", servo}})) return missing;
-    *servo = nullptr;
-    if (const ist_status missing = call.need({{"path", path}, {"options", options}})) {
-      return missing;
-    }
-    OpenOptions asked;
-    if (const ist_status wrong = read_servo_options(call, *options, asked)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    call.clear("servo", servo);
+    call.need("path", path);
+    call.need("options", options);
+    const OpenOptions asked = read_servo_options(call, options);
+    if (call.status() != IST_OK) return;
     ist::Scene scene = ist::read_scene(path);
     replace_device(scene);
     ist::Progress progress;
@@ -146,18 +139,17 @@ ist_status ist_servo_open_scene(const char* path, const ist_servo_options* optio
       made = std::make_unique<Servo>(ist::build_scene(scene, {}, asked.max_memory, &progress),
                                      asked.callback);
     });
-    return whole ? give(call, std::move(made), servo) : cancelled(call);
+    whole ? give(call, std::move(made), servo) : cancelled(call);
   });
 }
 
 const char* ist_servo_warning(ist_servo* servo, size_t index) IST_NOEXCEPT {
   const char* text = nullptr;
-  static_cast<void>(guarded(__func__, [&](const Call& call) -> ist_status {
+  static_cast<void>(guarded(__func__, [&](Call& call) {
     const Held<Servo> held(call, "servo", servo);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const std::vector<std::string>& warnings = held->scene.warnings;
     if (index < warnings.size()) text = warnings[index].c_str();
-    return IST_OK;
   }));
   return text;
 }
@@ -168,34 +160,33 @@ ist_status ist_servo_get_info(ist_servo* servo, ist_servo_info* info) IST_NOEXCE
 
 ist_status ist_servo_on_tick(ist_servo* servo, const double pose[16], double force[3],
                              double torque[3]) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
+  return guarded(__func__, [&](Call& call) {
     if (force != nullptr) std::fill_n(force, 3, 0.0);
     if (torque != nullptr) std::fill_n(torque, 3, 0.0);
     const Held<Servo> held(call, "servo", servo);
-    if (held.status() != IST_OK) return held.status();
-    if (const auto missing = call.need({{"pose", pose}, {"force", force}, {"torque", torque}})) {
-      held->callback.fault();
-      return missing;
-    }
+    if (!held) return;
+    call.need("pose", pose);
+    call.need("force", force);
+    call.need("torque", torque);
+    if (call.status() != IST_OK) return held->callback.fault();
     const ist::ServoTick tick =
         held->callback.on_tick(std::span<const double, 16>(pose, 16),
                                std::span<double, 3>(force, 3), std::span<double, 3>(torque, 3));
-    if (tick != ist::ServoTick::kFault) return IST_OK;
+    if (tick != ist::ServoTick::kFault) return;
     if (!ist::Placement::from(to_isometry(pose))) {
-      return status_of(call, ist::QueryStatus::kInvalidPose, pose);
+      answered(call, ist::QueryStatus::kInvalidPose, pose);
     }
-    return call.fail(
-        IST_SERVO_FAULT,
-        "a force was not a number: the output is zero, and forces return gradually; report "
-        "the scene if this repeats");
+    call.fail(IST_SERVO_FAULT,
+              "a force was not a number: the output is zero, and forces return gradually; "
+              "report the scene if this repeats");
   });
 }
 
 ist_status ist_servo_get_body(ist_servo* servo, size_t index, ist_servo_body* body) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_sized(call, "body", body)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "body", body);
     const Held<Servo> held(call, "servo", servo);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const ist::Simulation& simulation = *held->scene.simulation;
     if (index >= simulation.bodies()) {
       return call.fail(IST_ARGUMENT_INVALID, "index is {}, and the scene has {} bodies", index,
@@ -209,7 +200,6 @@ ist_status ist_servo_get_body(ist_servo* servo, size_t index, ist_servo_body* bo
     pose.translation() /= held->callback.unit();
     std::copy_n(pose.data(), 16, found.pose);
     write_sized(found, *body);
-    return IST_OK;
   });
 }
 

@@ -1,5 +1,4 @@
 #include <cstring>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -11,12 +10,7 @@
 namespace ist::capi {
 namespace {
 
-struct SweepObject {
-  using Handle = ist_sweep;
-  static constexpr HandleKind kKind = HandleKind::kSweep;
-  static constexpr HandleUse kUse = HandleUse::kShared;
-  static constexpr const char* kName = "sweep";
-
+struct SweepObject : OfHandle<ist_sweep, HandleKind::kSweep, HandleUse::kShared> {
   explicit SweepObject(const char* path) : sweep(path) {}
   Sweep sweep;
 };
@@ -59,9 +53,9 @@ ist_sweep_part part_of(const SweepFolder& folder, std::uint64_t part, const Part
   return result;
 }
 
-ist_status fail_part(const Call& call, std::uint64_t part, std::uint64_t parts) {
-  return call.fail(IST_ARGUMENT_INVALID, "part is {}, and the sweep has {}: pass a smaller number",
-                   part, parts);
+void fail_part(Call& call, std::uint64_t part, std::uint64_t parts) {
+  call.fail(IST_ARGUMENT_INVALID, "part is {}, and the sweep has {}: pass a smaller number", part,
+            parts);
 }
 
 }  // namespace
@@ -71,17 +65,8 @@ using namespace ist::capi;
 
 ist_status ist_sweep_open(const char* path, const ist_progress* progress,
                           ist_sweep** sweep) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"sweep", sweep}})) return missing;
-    *sweep = nullptr;
-    if (const ist_status missing = call.need({{"path", path}})) return missing;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
-    std::unique_ptr<SweepObject> made;
-    const bool whole = followed(
-        follower, [&](const ist::Proceed&) { made = std::make_unique<SweepObject>(path); });
-    return whole ? give(call, std::move(made), sweep) : cancelled(call);
-  });
+  return read_object<SweepObject>(__func__, path, progress, sweep,
+                                  [](const char* file) { return file; });
 }
 
 ist_status ist_sweep_free(ist_sweep* sweep) IST_NOEXCEPT {
@@ -94,10 +79,10 @@ ist_status ist_sweep_get_info(const ist_sweep* sweep, ist_sweep_info* info) IST_
 
 ist_status ist_sweep_get_column(const ist_sweep* sweep, uint64_t column,
                                 ist_sweep_column* info) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_sized(call, "info", info)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "info", info);
     const Held<SweepObject> held(call, "sweep", sweep);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const auto& columns = held->sweep.layout().columns;
     if (column >= columns.size()) {
       return call.fail(IST_ARGUMENT_INVALID,
@@ -110,16 +95,15 @@ ist_status ist_sweep_get_column(const ist_sweep* sweep, uint64_t column,
     made.type = static_cast<std::int32_t>(known.type) + IST_COLUMN_UINT64;
     made.offset = known.offset;
     write_sized(made, *info);
-    return IST_OK;
   });
 }
 
 ist_status ist_sweep_get_poses(const ist_sweep* sweep, uint64_t first, size_t count,
                                double* poses) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need_array("poses", poses, count)) return missing;
+  return guarded(__func__, [&](Call& call) {
+    call.need_array("poses", poses, count);
     const Held<SweepObject> held(call, "sweep", sweep);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const std::uint64_t rows = held->sweep.rows();
     if (first > rows || count > rows - first) {
       return call.fail(IST_ARGUMENT_INVALID,
@@ -131,26 +115,19 @@ ist_status ist_sweep_get_poses(const ist_sweep* sweep, uint64_t first, size_t co
     for (std::size_t i = 0; i < count; ++i) {
       std::memcpy(poses + 16 * i, made[i].data(), 16 * sizeof(double));
     }
-    return IST_OK;
   });
 }
 
 ist_status ist_sweep_run_part(const ist_sweep* sweep, const char* folder, uint64_t part,
                               int32_t threads, const ist_progress* progress,
                               ist_sweep_part* result) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    constexpr std::int32_t kMostThreads = 1024;
-    if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
-    if (const ist_status missing = call.need({{"folder", folder}})) return missing;
-    if (threads < 0 || threads > kMostThreads) {
-      return call.fail(IST_ARGUMENT_INVALID,
-                       "threads is {}: pass 1 to {}, or 0 for one for each core", threads,
-                       kMostThreads);
-    }
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "result", result);
+    call.need("folder", folder);
+    check_threads(call, "threads", threads);
+    const Follower follower = read_follower(call, progress);
     const Held<SweepObject> held(call, "sweep", sweep);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const ist::Sweep& known = held->sweep;
     if (part >= known.parts()) return fail_part(call, part, known.parts());
     std::optional<ist::SweepFolder> parts;
@@ -164,33 +141,30 @@ ist_status ist_sweep_run_part(const ist_sweep* sweep, const char* folder, uint64
     ist_sweep_part made = part_of(*parts, part, parts->look(part));
     made.made = outcome == ist::Sweep::Outcome::kMade;
     write_sized(made, *result);
-    return IST_OK;
   });
 }
 
 ist_status ist_sweep_get_part(const ist_sweep* sweep, const char* folder, uint64_t part,
                               int32_t verify, ist_sweep_part* result) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
-    if (const ist_status missing = call.need({{"folder", folder}})) return missing;
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "result", result);
+    call.need("folder", folder);
     const Held<SweepObject> held(call, "sweep", sweep);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     if (part >= held->sweep.parts()) return fail_part(call, part, held->sweep.parts());
     const ist::SweepFolder parts = folder_of(held->sweep, folder, ist::SweepFolder::Access::kRead);
     write_sized(part_of(parts, part, verify != 0 ? parts.verify(part) : parts.look(part)), *result);
-    return IST_OK;
   });
 }
 
 ist_status ist_sweep_merge(const ist_sweep* sweep, const char* folder, const ist_progress* progress,
                            ist_sweep_merge_result* result) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
-    if (const ist_status missing = call.need({{"folder", folder}})) return missing;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "result", result);
+    call.need("folder", folder);
+    const Follower follower = read_follower(call, progress);
     const Held<SweepObject> held(call, "sweep", sweep);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     // No part has made the folder of a sweep without poses.
     const auto access = held->sweep.parts() == 0 ? ist::SweepFolder::Access::kWrite
                                                  : ist::SweepFolder::Access::kRead;
@@ -203,6 +177,5 @@ ist_status ist_sweep_merge(const ist_sweep* sweep, const char* folder, const ist
     });
     if (!made) return cancelled(call);
     write_sized(*made, *result);
-    return IST_OK;
   });
 }

@@ -14,28 +14,25 @@
 namespace ist::capi {
 namespace {
 
-ist_status read_build_options(const Call& call, const ist_build_options& given,
-                              BuildOptions& options, Follower& follower) {
-  ist_build_options known;
-  if (const ist_status wrong = read_sized(call, "options", given, known)) return wrong;
+BuildOptions read_build_options(Call& call, const ist_build_options& known) {
   if (!are_spheres(known.spheres)) {
-    return call.fail(IST_ARGUMENT_INVALID, "options->spheres is {}: pass one of IST_SPHERES_...",
-                     known.spheres);
+    call.fail(IST_ARGUMENT_INVALID, "options->spheres is {}: pass one of IST_SPHERES_...",
+              known.spheres);
   }
   const auto is_flag = [](std::int32_t value) { return value == 0 || value == 1; };
   if (!is_flag(known.drop_triangles) || !is_flag(known.proximity) || !is_flag(known.no_weld)) {
-    return call.fail(IST_ARGUMENT_INVALID,
-                     "options->drop_triangles is {}, proximity is {} and no_weld is {}: pass 0 or "
-                     "1 for each",
-                     known.drop_triangles, known.proximity, known.no_weld);
+    call.fail(IST_ARGUMENT_INVALID,
+              "options->drop_triangles is {}, proximity is {} and no_weld is {}: pass 0 or "
+              "1 for each",
+              known.drop_triangles, known.proximity, known.no_weld);
   }
   if (known.frame < IST_FRAME_UNKNOWN || known.frame > IST_FRAME_LPS) {
-    return call.fail(IST_ARGUMENT_INVALID, "options->frame is {}: pass one of IST_FRAME_...",
-                     known.frame);
+    call.fail(IST_ARGUMENT_INVALID, "options->frame is {}: pass one of IST_FRAME_...", known.frame);
   }
   if (known.reserved != 0) {
-    return call.fail(IST_ARGUMENT_INVALID, "options->reserved is {}: set it to 0", known.reserved);
+    call.fail(IST_ARGUMENT_INVALID, "options->reserved is {}: set it to 0", known.reserved);
   }
+  BuildOptions options;
   options.frame = static_cast<PatientFrame>(known.frame);
   options.voxel_size = known.voxel_size;
   options.spheres = policy_of(known.spheres).value_or(options.spheres);
@@ -43,7 +40,7 @@ ist_status read_build_options(const Call& call, const ist_build_options& given,
   options.proximity = known.proximity == 1;
   options.weld = known.no_weld == 0;
   if (known.max_memory > 0) options.max_memory = known.max_memory;
-  return read_follower(call, known.progress, follower);
+  return options;
 }
 
 // The stages that a build begins.
@@ -82,107 +79,94 @@ using namespace ist::capi;
 
 ist_status ist_tree_build(const ist_mesh* mesh, const ist_build_options* options,
                           ist_tree** tree) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"tree", tree}})) return missing;
-    *tree = nullptr;
-    if (const ist_status missing = call.need({{"options", options}})) return missing;
-    ist::BuildOptions build;
-    Follower follower;
-    if (const ist_status wrong = read_build_options(call, *options, build, follower)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    call.clear("tree", tree);
+    call.need("options", options);
+    const ist_build_options known = read_sized(call, "options", options);
+    const ist::BuildOptions build = read_build_options(call, known);
+    const Follower follower = read_follower(call, known.progress);
     const Held<Mesh> held(call, "mesh", mesh);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     ist::Progress progress;
     std::unique_ptr<Tree> made;
     const bool whole = followed(follower, progress, stages_of(build), [&] {
-      made = std::make_unique<Tree>(Tree{ist::build_tree(held->mesh, build, nullptr, &progress)});
+      made = std::make_unique<Tree>(ist::build_tree(held->mesh, build, nullptr, &progress));
     });
-    return whole ? give(call, std::move(made), tree) : cancelled(call);
+    whole ? give(call, std::move(made), tree) : cancelled(call);
   });
 }
 
 ist_status ist_tree_load(const char* path, const ist_progress* progress,
                          ist_tree** tree) IST_NOEXCEPT {
   return read_object<Tree>(__func__, path, progress, tree,
-                           [](const char* file) { return Tree{ist::read_tree(file)}; });
+                           [](const char* file) { return ist::read_tree(file); });
 }
 
 ist_status ist_tree_save(const ist_tree* tree, const char* path,
                          const ist_progress* progress) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"path", path}})) return missing;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    call.need("path", path);
+    const Follower follower = read_follower(call, progress);
     const Held<Tree> held(call, "tree", tree);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     bool written = false;
     followed(follower, [&](const ist::Proceed&) {
       ist::write_tree(held->tree, path);
       written = true;
     });
     // A caller who says stop while the file waits for the disk is too late.
-    return written ? IST_OK : cancelled(call);
+    if (!written) cancelled(call);
   });
 }
 
 ist_status ist_tree_to_memory(const ist_tree* tree, void* memory, size_t capacity,
                               const ist_progress* progress, uint64_t* bytes) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"bytes", bytes}})) return missing;
-    *bytes = 0;
-    if (const auto missing = call.need_array("memory", memory, capacity)) return missing;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    call.clear("bytes", bytes);
+    call.need_array("memory", memory, capacity);
+    const Follower follower = read_follower(call, progress);
     const Held<Tree> held(call, "tree", tree);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     std::vector<std::byte> file;
     const bool whole =
         followed(follower, [&](const ist::Proceed&) { file = ist::tree_to_bytes(held->tree); });
     if (!whole) return cancelled(call);
     *bytes = file.size();
     if (capacity >= file.size()) std::memcpy(memory, file.data(), file.size());
-    return IST_OK;
   });
 }
 
 ist_status ist_tree_from_memory(const void* memory, size_t bytes, const ist_progress* progress,
                                 ist_tree** tree) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"tree", tree}})) return missing;
-    *tree = nullptr;
-    if (const auto missing = call.need_array("memory", memory, bytes)) return missing;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
-    std::unique_ptr<Tree> made;
-    const bool whole = followed(follower, [&](const ist::Proceed&) {
-      made = std::make_unique<Tree>(
-          Tree{ist::tree_from_bytes({static_cast<const std::byte*>(memory), bytes})});
+  return guarded(__func__, [&](Call& call) {
+    call.clear("tree", tree);
+    call.need_array("memory", memory, bytes);
+    make_object<Tree>(call, progress, tree, [&] {
+      return std::make_unique<Tree>(
+          ist::tree_from_bytes({static_cast<const std::byte*>(memory), bytes}));
     });
-    return whole ? give(call, std::move(made), tree) : cancelled(call);
   });
 }
 
 ist_status ist_tree_get_mesh(const ist_tree* tree, ist_mesh** mesh) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"mesh", mesh}})) return missing;
-    *mesh = nullptr;
+  return guarded(__func__, [&](Call& call) {
+    call.clear("mesh", mesh);
     const Held<Tree> held(call, "tree", tree);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const ist::TriangleMesh* kept = held->tree.triangles();
     if (kept == nullptr) {
       return call.fail(IST_TRIANGLES_MISSING, "the tree keeps no triangles: build it with them");
     }
-    return give(call, std::make_unique<Mesh>(Mesh{*kept}), mesh);
+    give(call, std::make_unique<Mesh>(*kept), mesh);
   });
 }
 
 ist_status ist_tree_self_intersections(const ist_tree* tree, uint64_t* pairs) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"pairs", pairs}})) return missing;
-    *pairs = 0;
+  return guarded(__func__, [&](Call& call) {
+    call.clear("pairs", pairs);
     const Held<Tree> held(call, "tree", tree);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     *pairs = held->tree.self_intersections();
-    return IST_OK;
   });
 }
 
@@ -192,15 +176,14 @@ ist_status ist_tree_get_info(const ist_tree* tree, ist_tree_info* info) IST_NOEX
 
 ist_status ist_tree_copy_leaf_centres(const ist_tree* tree, double* centres,
                                       size_t capacity) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const auto missing = call.need_array("centres", centres, capacity)) return missing;
+  return guarded(__func__, [&](Call& call) {
+    call.need_array("centres", centres, capacity);
     const Held<Tree> held(call, "tree", tree);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const std::vector<Eigen::Vector3d> all = held->tree.leaf_centres();
     for (const Eigen::Vector3d& centre : std::span(all).first(std::min(capacity, all.size()))) {
       centres = std::copy_n(centre.data(), 3, centres);
     }
-    return IST_OK;
   });
 }
 

@@ -11,45 +11,36 @@ namespace {
 
 static_assert(IST_MOST_BODIES == kMostBodies);
 
-struct WorldObject {
-  using Handle = ist_world;
-  static constexpr HandleKind kKind = HandleKind::kWorld;
-  static constexpr HandleUse kUse = HandleUse::kAlone;
-  static constexpr const char* kName = "world";
-
+struct WorldObject : OfHandle<ist_world, HandleKind::kWorld, HandleUse::kAlone> {
   explicit WorldObject(const WorldOptions& options) : world(options) {}
   World world;
 };
 
-// Converts the status of a whole answer; stores the message of an error. `pose` is the pose that
-// was asked about, or null.
-ist_status status_of_world(const Call& call, QueryStatus status, const double* pose = nullptr) {
+// Returns whether a whole answer is there; fails if not. `pose` is the pose that was asked about,
+// or null.
+bool world_answered(Call& call, QueryStatus status, const double* pose = nullptr) {
   if (status == QueryStatus::kNoSuchBody) {
-    return call.fail(IST_ARGUMENT_INVALID, "no body has this number: pass one that was added");
+    call.fail(IST_ARGUMENT_INVALID, "no body has this number: pass one that was added");
+  } else if (status == QueryStatus::kNotPrepared) {
+    call.fail(IST_NOT_PREPARED,
+              "the world is not prepared: call ist_world_prepare after the last body");
   }
-  if (status == QueryStatus::kNotPrepared) {
-    return call.fail(IST_NOT_PREPARED,
-                     "the world is not prepared: call ist_world_prepare after the last body");
-  }
-  return status_of(call, status, pose);
+  return answered(call, status, pose);
 }
 
-ist_status read_world_options(const Call& call, const ist_world_options* given,
-                              WorldOptions& options) {
-  if (given == nullptr) return IST_OK;
-  ist_world_options known;
-  if (const ist_status wrong = read_sized(call, "options", *given, known)) return wrong;
+WorldOptions read_world_options(Call& call, const ist_world_options* given) {
+  const ist_world_options known = read_sized(call, "options", given);
+  WorldOptions options;
   if (known.query != nullptr) {
-    CQueryOptions query;
-    if (const ist_status wrong = read_query_options(call, *known.query, query)) return wrong;
+    const CQueryOptions query = read_query_options(call, known.query);
     options.query = query.query;
     if (query.manifold) options.manifold = *query.manifold;
     if (!query.manifold) options.manifold.points = 0;
   }
-  options.reach = known.reach;
+  if (given != nullptr) options.reach = known.reach;
   if (known.most_near > 0) options.most_near = known.most_near;
   if (known.max_memory > 0) options.max_memory = known.max_memory;
-  return IST_OK;
+  return options;
 }
 
 // The pairs of a caller; empty for all.
@@ -116,38 +107,21 @@ std::optional<WorldQuestion::Kind> kind_of(std::int32_t ask) {
   }
 }
 
-ist_status check_tolerance(const Call& call, const char* name, double tolerance) {
-  if (tolerance >= 0) return IST_OK;
-  return call.fail(IST_ARGUMENT_INVALID, "{} is {}: pass a number of at least 0", name, tolerance);
-}
-
-ist_status read_question(const Call& call, const ist_world_question* given,
-                         WorldQuestion& question) {
-  if (const ist_status missing = call.need({{"question", given}})) return missing;
-  ist_world_question known;
-  if (const ist_status wrong = read_sized(call, "question", *given, known)) return wrong;
+WorldQuestion read_question(Call& call, const ist_world_question* given) {
+  call.need("question", given);
+  const ist_world_question known = read_sized(call, "question", given);
   const auto kind = kind_of(known.ask);
   if (!kind) {
-    return call.fail(IST_ARGUMENT_INVALID,
-                     "question->ask is {}: pass one IST_ASK_... other than a penetration",
-                     known.ask);
+    call.fail(IST_ARGUMENT_INVALID,
+              "question->ask is {}: pass one IST_ASK_... other than a penetration", known.ask);
   }
-  if (const ist_status wrong = check_tolerance(call, "question->tolerance", known.tolerance)) {
-    return wrong;
-  }
-  if (const ist_status missing =
-          call.need_array("question->leaf_pairs", known.leaf_pairs, known.leaf_capacity)) {
-    return missing;
-  }
-  if (const ist_status missing =
-          call.need_array("question->triangles", known.triangles, known.triangle_capacity)) {
-    return missing;
-  }
-  question = {*kind,
-              known.tolerance,
-              {reinterpret_cast<LeafPair*>(known.leaf_pairs), known.leaf_capacity},
-              {reinterpret_cast<TrianglePair*>(known.triangles), known.triangle_capacity}};
-  return IST_OK;
+  check_tolerance(call, "question->tolerance", known.tolerance);
+  call.need_array("question->leaf_pairs", known.leaf_pairs, known.leaf_capacity);
+  call.need_array("question->triangles", known.triangles, known.triangle_capacity);
+  return {kind.value_or(WorldQuestion::kNear),
+          known.tolerance,
+          {reinterpret_cast<LeafPair*>(known.leaf_pairs), known.leaf_capacity},
+          {reinterpret_cast<TrianglePair*>(known.triangles), known.triangle_capacity}};
 }
 
 }  // namespace
@@ -157,62 +131,54 @@ ist_status read_question(const Call& call, const ist_world_question* given,
 using namespace ist::capi;
 
 ist_status ist_world_create(const ist_world_options* options, ist_world** world) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"world", world}})) return missing;
-    *world = nullptr;
-    ist::WorldOptions known;
-    if (const ist_status wrong = read_world_options(call, options, known)) return wrong;
-    return give(call, std::make_unique<WorldObject>(known), world);
+  return guarded(__func__, [&](Call& call) {
+    call.clear("world", world);
+    const ist::WorldOptions known = read_world_options(call, options);
+    if (call.status() == IST_OK) give(call, std::make_unique<WorldObject>(known), world);
   });
 }
 
 ist_status ist_world_add(ist_world* world, const ist_tree* tree, const double pose[16],
                          const char* name, uint32_t* body) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"body", body}})) return missing;
-    *body = 0;
+  return guarded(__func__, [&](Call& call) {
+    call.clear("body", body);
     const Held<WorldObject> held(call, "world", world);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const Held<Tree> of_tree(call, "tree", tree);
-    if (of_tree.status() != IST_OK) return of_tree.status();
+    if (!of_tree) return;
     const Eigen::Isometry3d at =
         pose == nullptr ? Eigen::Isometry3d::Identity() : to_isometry(pose);
     *body = held->world.add(of_tree->tree, at, name == nullptr ? "" : name);
-    return IST_OK;
   });
 }
 
 ist_status ist_world_ignore(ist_world* world, uint32_t a, uint32_t b) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
+  return guarded(__func__, [&](Call& call) {
     const Held<WorldObject> held(call, "world", world);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     held->world.ignore(a, b);
-    return IST_OK;
   });
 }
 
 ist_status ist_world_bytes_needed(ist_world* world, const ist_body_pair* pairs, size_t count,
                                   uint64_t* bytes) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"bytes", bytes}})) return missing;
-    *bytes = 0;
-    if (const ist_status missing = call.need_array("pairs", pairs, count)) return missing;
+  return guarded(__func__, [&](Call& call) {
+    call.clear("bytes", bytes);
+    call.need_array("pairs", pairs, count);
     const Held<WorldObject> held(call, "world", world);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const auto some = pairs_of(pairs, count);
     *bytes = some ? held->world.bytes_needed(*some) : held->world.bytes_needed();
-    return IST_OK;
   });
 }
 
 ist_status ist_world_prepare(ist_world* world, const ist_body_pair* pairs, size_t count,
                              const ist_progress* progress) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need_array("pairs", pairs, count)) return missing;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    call.need_array("pairs", pairs, count);
+    const Follower follower = read_follower(call, progress);
     const Held<WorldObject> held(call, "world", world);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const auto some = pairs_of(pairs, count);
     bool prepared = false;
     followed(follower, [&](const ist::Proceed& proceed) {
@@ -220,7 +186,7 @@ ist_status ist_world_prepare(ist_world* world, const ist_body_pair* pairs, size_
       prepared = true;
     });
     // A caller who says stop after the last pair is too late.
-    return prepared ? IST_OK : cancelled(call);
+    if (!prepared) cancelled(call);
   });
 }
 
@@ -231,37 +197,34 @@ ist_status ist_world_get_info(ist_world* world, ist_world_info* info) IST_NOEXCE
 }
 
 ist_status ist_world_set_pose(ist_world* world, uint32_t body, const double pose[16]) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
+  return guarded(__func__, [&](Call& call) {
+    call.need("pose", pose);
     const Held<WorldObject> held(call, "world", world);
-    if (held.status() != IST_OK) return held.status();
-    return status_of_world(call, held->world.set_pose(body, to_isometry(pose)), pose);
+    if (!held) return;
+    world_answered(call, held->world.set_pose(body, to_isometry(pose)), pose);
   });
 }
 
 ist_status ist_world_get_pose(ist_world* world, uint32_t a, uint32_t b,
                               double pose[16]) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
-    std::fill_n(pose, 16, 0.0);
+  return guarded(__func__, [&](Call& call) {
+    if (call.need("pose", pose)) std::fill_n(pose, 16, 0.0);
     const Held<WorldObject> held(call, "world", world);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     if (std::max(a, b) >= held->world.body_count()) {
-      return status_of_world(call, ist::QueryStatus::kNoSuchBody);
+      return static_cast<void>(world_answered(call, ist::QueryStatus::kNoSuchBody));
     }
     const auto found = held->world.pose_of(a, b);
-    if (!found) return status_of(call, ist::QueryStatus::kInvalidPose);
+    if (!answered(call, found ? ist::QueryStatus::kDone : ist::QueryStatus::kInvalidPose)) return;
     std::copy_n(found->matrix().data(), 16, pose);
-    return IST_OK;
   });
 }
 
 ist_status ist_world_forget(ist_world* world) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
+  return guarded(__func__, [&](Call& call) {
     const Held<WorldObject> held(call, "world", world);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     held->world.forget();
-    return IST_OK;
   });
 }
 
@@ -272,17 +235,15 @@ ist_status ist_world_free(ist_world* world) IST_NOEXCEPT {
 ist_status ist_world_ask(ist_world* world, const ist_world_question* question,
                          const ist_budget* budget, ist_world_pair* pairs, size_t capacity,
                          ist_world_result* result) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
-    if (const ist_status missing = call.need_array("pairs", pairs, capacity)) return missing;
-    ist::WorldQuestion asked;
-    if (const ist_status wrong = read_question(call, question, asked)) return wrong;
-    ist::Budget allowed;
-    if (const ist_status wrong = read_budget(call, budget, allowed)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "result", result);
+    call.need_array("pairs", pairs, capacity);
+    const ist::WorldQuestion asked = read_question(call, question);
+    const ist::Budget allowed = read_budget(call, budget);
     const Held<WorldObject> held(call, "world", world);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const ist::WorldAnswer found = held->world.ask(asked, allowed);
-    if (const ist_status wrong = status_of_world(call, found.status)) return wrong;
+    if (!world_answered(call, found.status)) return;
     ist_world_result values{};
     values.near_pairs = found.near_pairs;
     values.written = std::min<std::uint64_t>(found.pairs.size(), capacity);
@@ -293,22 +254,18 @@ ist_status ist_world_ask(ist_world* world, const ist_world_question* question,
                    found.pairs.begin() + static_cast<std::ptrdiff_t>(values.written), pairs,
                    pair_of);
     write_sized(values, *result);
-    return IST_OK;
   });
 }
 
 ist_status ist_world_get_contacts(ist_world* world, uint32_t a, uint32_t b, ist_contact* contacts,
                                   size_t capacity, ist_contact_sums* sums,
                                   uint64_t* count) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"count", count}})) return missing;
-    *count = 0;
-    if (sums != nullptr) {
-      if (const ist_status wrong = clear_sized(call, "sums", sums)) return wrong;
-    }
-    if (const ist_status missing = call.need_array("contacts", contacts, capacity)) return missing;
+  return guarded(__func__, [&](Call& call) {
+    call.clear("count", count);
+    if (sums != nullptr) clear_sized(call, "sums", sums);
+    call.need_array("contacts", contacts, capacity);
     const Held<WorldObject> held(call, "world", world);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const ist::ContactManifold* const manifold = held->world.manifold(a, b);
     if (manifold == nullptr) {
       return call.fail(IST_NOT_PREPARED,
@@ -322,28 +279,23 @@ ist_status ist_world_get_contacts(ist_world* world, uint32_t a, uint32_t b, ist_
     std::transform(made.begin(), made.begin() + static_cast<std::ptrdiff_t>(written), contacts,
                    contact_of);
     if (sums != nullptr) write_sized(sums_of(manifold->sums()), *sums);
-    return IST_OK;
   });
 }
 
 ist_status ist_world_distance(ist_world* world, double tolerance, const ist_budget* budget,
                               ist_least_distance* result) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
-    if (const ist_status wrong = check_tolerance(call, "tolerance", tolerance)) return wrong;
-    ist::Budget allowed;
-    if (const ist_status wrong = read_budget(call, budget, allowed)) return wrong;
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "result", result);
+    check_tolerance(call, "tolerance", tolerance);
+    const ist::Budget allowed = read_budget(call, budget);
     const Held<WorldObject> held(call, "world", world);
-    if (held.status() != IST_OK) return held.status();
+    if (!held) return;
     const ist::WorldDistance found = held->world.distance(tolerance, allowed);
     const bool lost = found.status == ist::QueryStatus::kInvalidPose;
-    if (!lost) {
-      if (const ist_status wrong = status_of_world(call, found.status)) return wrong;
-    }
+    if (!lost && !world_answered(call, found.status)) return;
     const ist::BodyPair nearest = found.nearest.value_or(ist::BodyPair{});
     write_sized({0, found.distance.lower, found.distance.upper, found.sphere_tests, found.complete,
                  lost, found.nearest.has_value(), nearest.a, nearest.b, 0},
                 *result);
-    return IST_OK;
   });
 }

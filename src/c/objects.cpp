@@ -1,6 +1,7 @@
 #include "c/objects.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "ist/base/pose.h"
 
@@ -37,10 +38,9 @@ ist_contact_sums sums_of(const ContactSums& sums) noexcept {
   return out;
 }
 
-ist_status read_budget(const Call& call, const ist_budget* given, Budget& budget) {
-  if (given == nullptr) return IST_OK;
-  ist_budget known;
-  if (const ist_status wrong = read_sized(call, "budget", *given, known)) return wrong;
+Budget read_budget(Call& call, const ist_budget* given) {
+  Budget budget;
+  const ist_budget known = read_sized(call, "budget", given);
   if (known.tests > 0) budget.tests = known.tests;
   if (known.nanoseconds > 0) {
     const Budget::Clock::time_point now = Budget::Clock::now();
@@ -49,43 +49,66 @@ ist_status read_budget(const Call& call, const ist_budget* given, Budget& budget
       budget.deadline = now + std::chrono::nanoseconds(known.nanoseconds);
     }
   }
-  return IST_OK;
+  return budget;
 }
 
-ist_status need_contacts(const Call& call, const QueryObject& query) {
-  if (!query.has_voxels()) return status_of(call, QueryStatus::kNoVoxels);
-  if (query.manifold) return IST_OK;
-  return call.fail(IST_NOT_PREPARED,
-                   "the query was created without contacts: create it with a number of them");
+void check_tolerance(Call& call, const char* name, double tolerance) {
+  if (tolerance >= 0) return;
+  call.fail(IST_ARGUMENT_INVALID, "{} is {}: pass a number of at least 0", name, tolerance);
 }
 
-ist_status status_of(const Call& call, QueryStatus status, const double* pose) {
+void check_finite(Call& call, const char* name, double number) {
+  if (std::isfinite(number)) return;
+  call.fail(IST_ARGUMENT_INVALID, "{} is {}: pass a finite number", name, number);
+}
+
+void check_threads(Call& call, const char* name, std::int32_t threads) {
+  constexpr std::int32_t kMost = 1024;
+  if (threads >= 0 && threads <= kMost) return;
+  call.fail(IST_ARGUMENT_INVALID, "{} is {}: pass 1 to {}, or 0 for one for each core", name,
+            threads, kMost);
+}
+
+bool gives_contacts(Call& call, const QueryObject& query) {
+  if (!query.has_voxels()) return answered(call, QueryStatus::kNoVoxels);
+  if (query.manifold) return true;
+  call.fail(IST_NOT_PREPARED,
+            "the query was created without contacts: create it with a number of them");
+  return false;
+}
+
+bool answered(Call& call, QueryStatus status, const double* pose) {
   switch (status) {
     case QueryStatus::kDone:
-      return IST_OK;
+      return true;
     case QueryStatus::kInvalidPose:
-      return call.fail(IST_POSE_INVALID, "pose is not a rigid motion: {}",
-                       pose != nullptr ? why_not_rigid(to_isometry(pose))
-                                       : "set the poses of both bodies first");
+      call.fail(IST_POSE_INVALID, "pose is not a rigid motion: {}",
+                pose != nullptr ? why_not_rigid(to_isometry(pose))
+                                : "set the poses of both bodies first");
+      return false;
     case QueryStatus::kNoTriangles:
-      return call.fail(IST_TRIANGLES_MISSING,
-                       "a tree has no triangles: build both trees with them");
+      call.fail(IST_TRIANGLES_MISSING, "a tree has no triangles: build both trees with them");
+      return false;
     case QueryStatus::kNoVoxels:
-      return call.fail(IST_VOXELS_MISSING,
-                       "a tree has no voxels, which leaf pairs and contacts need: build both trees "
-                       "with a voxel_size");
+      call.fail(IST_VOXELS_MISSING,
+                "a tree has no voxels, which leaf pairs and contacts need: build both trees with a "
+                "voxel_size");
+      return false;
     case QueryStatus::kMarginInvalid:
-      return call.fail(IST_ARGUMENT_INVALID, "margin is negative, infinite or NaN: pass a length");
+      call.fail(IST_ARGUMENT_INVALID, "margin is negative, infinite or NaN: pass a length");
+      return false;
     case QueryStatus::kNoSuchTriangle:
-      return call.fail(IST_ARGUMENT_INVALID,
-                       "a triangle's index is too large: pass indices of both meshes");
+      call.fail(IST_ARGUMENT_INVALID,
+                "a triangle's index is too large: pass indices of both meshes");
+      return false;
     case QueryStatus::kManifoldMismatch:  // each manifold belongs to its query
     case QueryStatus::kBusy:              // a handle is used by one thread at a time
     case QueryStatus::kNotPrepared:       // of a world
     case QueryStatus::kNoSuchBody:        // of a world
       break;
   }
-  return call.fail(IST_INTERNAL_ERROR, "a query returned an unknown status: report this bug");
+  call.fail(IST_INTERNAL_ERROR, "a query returned an unknown status: report this bug");
+  return false;
 }
 
 }  // namespace ist::capi

@@ -16,30 +16,18 @@
 /// functions on them share.
 namespace ist::capi {
 
-struct Mesh {
-  using Handle = ist_mesh;
-  static constexpr HandleKind kKind = HandleKind::kMesh;
-  static constexpr HandleUse kUse = HandleUse::kShared;
-  static constexpr const char* kName = "mesh";
-
+struct Mesh : OfHandle<ist_mesh, HandleKind::kMesh, HandleUse::kShared> {
+  Mesh() = default;
+  explicit Mesh(TriangleMesh made) : mesh(std::move(made)) {}
   TriangleMesh mesh;
 };
 
-struct Tree {
-  using Handle = ist_tree;
-  static constexpr HandleKind kKind = HandleKind::kTree;
-  static constexpr HandleUse kUse = HandleUse::kShared;
-  static constexpr const char* kName = "tree";
-
+struct Tree : OfHandle<ist_tree, HandleKind::kTree, HandleUse::kShared> {
+  explicit Tree(SphereTree made) : tree(std::move(made)) {}
   SphereTree tree;
 };
 
-struct QueryObject {
-  using Handle = ist_query;
-  static constexpr HandleKind kKind = HandleKind::kQuery;
-  static constexpr HandleUse kUse = HandleUse::kAlone;
-  static constexpr const char* kName = "query";
-
+struct QueryObject : OfHandle<ist_query, HandleKind::kQuery, HandleUse::kAlone> {
   /// @param manifold_options empty: the query gives no contacts, as without voxels
   QueryObject(const SphereTree& fixed, const SphereTree& moving, const QueryOptions& options,
               const std::optional<ManifoldOptions>& manifold_options)
@@ -97,36 +85,50 @@ static_assert(spheres_of(SpherePolicy::kSimple) == IST_SPHERES_SIMPLE &&
 void copy(const Eigen::Vector3d& from, double (&to)[3]) noexcept;
 
 /// Converts a caller's budget; NULL leaves the default, which has no limit.
-[[nodiscard]] ist_status read_budget(const Call& call, const ist_budget* given, Budget& budget);
+[[nodiscard]] Budget read_budget(Call& call, const ist_budget* given);
 
 /// The options of a query, and of its contacts.
 struct CQueryOptions {
   QueryOptions query;
   std::optional<ManifoldOptions> manifold = ManifoldOptions{};  // empty: no contacts
 };
-/// Converts a caller's options of a query (ist_c_query.cpp).
-[[nodiscard]] ist_status read_query_options(const Call& call, const ist_query_options& given,
-                                            CQueryOptions& options);
+/// Converts a caller's options of a query (ist_c_query.cpp); NULL leaves the defaults.
+[[nodiscard]] CQueryOptions read_query_options(Call& call, const ist_query_options* given);
 
-/// Returns IST_OK if a query gives contacts; else stores the message of an error.
-[[nodiscard]] ist_status need_contacts(const Call& call, const QueryObject& query);
+/// Fails for a negative number and for NaN, for a number that is not finite, and for a number of
+/// threads below 0 or above 1024.
+void check_tolerance(Call& call, const char* name, double tolerance);
+void check_finite(Call& call, const char* name, double number);
+IST_LOOP_API void check_threads(Call& call, const char* name, std::int32_t threads);
 
-/// Converts a query's status; stores the message of an error.
+/// Returns whether a query gives contacts; fails if not.
+[[nodiscard]] bool gives_contacts(Call& call, const QueryObject& query);
+
+/// Fails for a status other than kDone. Returns whether the query answered.
 /// @param pose the pose that was asked about, or NULL
-[[nodiscard]] IST_LOOP_API ist_status status_of(const Call& call, QueryStatus status,
-                                                const double* pose = nullptr);
+IST_LOOP_API bool answered(Call& call, QueryStatus status, const double* pose = nullptr);
 
 /// Implements every ..._get_info by `info_of(object)`.
 template <typename T, SizedStruct Info, typename Body>
 [[nodiscard]] ist_status get_info(const char* function, const typename T::Handle* handle,
                                   Info* info, const Body& info_of) noexcept {
-  return guarded(function, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_sized(call, "info", info)) return wrong;
+  return guarded(function, [&](Call& call) {
+    clear_sized(call, "info", info);
     const Held<T> held(call, T::kName, handle);
-    if (held.status() != IST_OK) return held.status();
-    write_sized(info_of(*held), *info);
-    return IST_OK;
+    if (held) write_sized(info_of(*held), *info);
   });
+}
+
+/// Makes an object by `make()`, beside the caller's progress, and gives it to the caller. Does
+/// nothing in a call that failed.
+template <typename T, typename Make>
+void make_object(Call& call, const ist_progress* progress, typename T::Handle** out,
+                 const Make& make) {
+  const Follower follower = read_follower(call, progress);
+  if (call.status() != IST_OK) return;
+  std::unique_ptr<T> made;
+  const bool whole = followed(follower, [&](const Proceed&) { made = make(); });
+  whole ? give(call, std::move(made), out) : cancelled(call);
 }
 
 /// Implements every function that makes an object of a file, by `read(path)`.
@@ -134,16 +136,10 @@ template <typename T, typename Read>
 [[nodiscard]] ist_status read_object(const char* function, const char* path,
                                      const ist_progress* progress, typename T::Handle** out,
                                      const Read& read) noexcept {
-  return guarded(function, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{T::kName, out}})) return missing;
-    *out = nullptr;
-    if (const ist_status missing = call.need({{"path", path}})) return missing;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
-    std::unique_ptr<T> made;
-    const bool whole =
-        followed(follower, [&](const Proceed&) { made = std::make_unique<T>(read(path)); });
-    return whole ? give(call, std::move(made), out) : cancelled(call);
+  return guarded(function, [&](Call& call) {
+    call.clear(T::kName, out);
+    call.need("path", path);
+    make_object<T>(call, progress, out, [&] { return std::make_unique<T>(read(path)); });
   });
 }
 

@@ -20,34 +20,35 @@ concept SizedStruct = std::is_trivially_copyable_v<Struct> && std::is_standard_l
                       sizeof(Struct) >= kLeastStruct &&
                       sizeof(Struct) <= kMostStruct&& offsetof(Struct, struct_size) == 0;
 
-/// Fails where struct_size is not a valid size.
+/// Fails where struct_size is not a valid size. Returns whether it is one.
 template <SizedStruct Struct>
-[[nodiscard]] ist_status check_size(const Call& call, const char* name, const Struct& given) {
+bool check_size(Call& call, const char* name, const Struct& given) {
   const std::size_t size = given.struct_size;
-  if (size >= kLeastStruct && size <= kMostStruct && size % kStructWord == 0) return IST_OK;
-  return call.fail(IST_STRUCT_SIZE, "{}->struct_size is {}: set it to sizeof, which is {}", name,
-                   size, sizeof(Struct));
+  if (size >= kLeastStruct && size <= kMostStruct && size % kStructWord == 0) return true;
+  call.fail(IST_STRUCT_SIZE, "{}->struct_size is {}: set it to sizeof, which is {}", name, size,
+            sizeof(Struct));
+  return false;
 }
 
-/// Copies a caller's options of any version. Fails for an invalid size, and where a member unknown
-/// to this library is not zero.
+/// Copies a caller's options of any version; NULL gives zeros, the defaults. Fails for an invalid
+/// size, and where a member unknown to this library is not zero.
 template <SizedStruct Struct>
-[[nodiscard]] ist_status read_sized(const Call& call, const char* name, const Struct& given,
-                                    Struct& options) {
-  if (const ist_status wrong = check_size(call, name, given)) return wrong;
-  const std::size_t size = given.struct_size;
-  const auto* bytes = reinterpret_cast<const unsigned char*>(&given);
+[[nodiscard]] Struct read_sized(Call& call, const char* name, const Struct* given) {
+  Struct options{};
+  if (given == nullptr || !check_size(call, name, *given)) return options;
+  const std::size_t size = given->struct_size;
+  const auto* bytes = reinterpret_cast<const unsigned char*>(given);
   if (size > sizeof(Struct) &&
       std::any_of(bytes + sizeof(Struct), bytes + size, [](unsigned char b) { return b != 0; })) {
-    return call.fail(IST_STRUCT_SIZE,
-                     "{} has {} bytes, and a member after byte {} is not zero: this library is "
-                     "older and does not know the member; set it to zero, or update the library",
-                     name, size, sizeof(Struct));
+    call.fail(IST_STRUCT_SIZE,
+              "{} has {} bytes, and a member after byte {} is not zero: this library is "
+              "older and does not know the member; set it to zero, or update the library",
+              name, size, sizeof(Struct));
+    return options;
   }
-  options = {};
-  std::memcpy(&options, &given, std::min(size, sizeof(Struct)));
+  std::memcpy(&options, given, std::min(size, sizeof(Struct)));
   options.struct_size = sizeof(Struct);
-  return IST_OK;
+  return options;
 }
 
 /// Fills a caller's struct of any version as far as its size allows, and sets members unknown to
@@ -64,11 +65,9 @@ void write_sized(const Struct& values, Struct& out) noexcept {
 
 /// Sets all members of a caller's struct to zero. Fails for NULL and for an invalid size.
 template <SizedStruct Struct>
-[[nodiscard]] ist_status clear_sized(const Call& call, const char* name, Struct* out) {
-  if (const ist_status missing = call.need({{name, out}})) return missing;
-  if (const ist_status wrong = check_size(call, name, *out)) return wrong;
+void clear_sized(Call& call, const char* name, Struct* out) {
+  if (!call.need(name, out) || !check_size(call, name, *out)) return;
   write_sized(Struct{}, *out);
-  return IST_OK;
 }
 
 }  // namespace ist::capi

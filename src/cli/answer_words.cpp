@@ -7,10 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "answers/answer.h"
 #include "cli/terminal.h"
+#include "ist/base/counted.h"
 
 namespace ist::cli {
 
@@ -93,7 +92,8 @@ void print_one(const PoseAnswer& answer, const Bodies& bodies) {
   }
   line("depth", depth);
   line("area", words_of(found.depth.area));
-  if (found.triangle_pairs) line("triangles", fmt::format("{} pairs meet", *found.triangle_pairs));
+  if (found.triangle_pairs)
+    line("triangles", counted(*found.triangle_pairs, "pair meets", "pairs meet"));
   if (const std::string inside = inside_of(found); !inside.empty()) line("inside", inside);
   for (const std::string& note : found.notes) line("note", note);
   if (found.distance && found.distance->lower > 0.5 * bodies.extent()) {
@@ -131,8 +131,7 @@ void print_times(const Engines& engines, const Bodies& bodies,
   fmt::print("\nspheres {}, voxel size {:.6g} and {:.6g}", to_string(bodies.policy),
              bodies.fixed.voxel_size(), bodies.moving.voxel_size());
   for (const Engine& engine : engines) {
-    fmt::print("; {}: {}, {} worker{}", engine.name(), engine.target(), engine.workers(),
-               engine.workers() == 1 ? "" : "s");
+    fmt::print("; {}: {}, {}", engine.name(), engine.target(), counted(engine.workers(), "worker"));
   }
   fmt::print("\n{:>5}  {:<10} {:>10} {:>12} {:>12} {:>10} {:>10}\n", "index", "engine",
              "leaf pairs", "tests", "median µs", "min µs", "rate Hz");

@@ -1,13 +1,17 @@
 #include "cli/common_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <limits>
 #include <system_error>
 
 #include "answers/refusals.h"
+#include "ist/base/files.h"
 #include "ist/tree/sphere_tree.h"
+#include "loop/scene/spelling.h"
 
 namespace ist::cli {
 
@@ -22,11 +26,39 @@ std::vector<std::string> policy_names() {
   return names;
 }
 
+std::string with_nearest(const std::string& why, const std::string& word,
+                         const std::vector<std::string>& known) {
+  const std::string* nearest = nullptr;
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  for (const std::string& each : known) {
+    const std::size_t changes = edits(word, each);
+    if (!looks_like(word, each) || changes >= fewest) continue;
+    fewest = changes;
+    nearest = &each;
+  }
+  return nearest == nullptr ? why : why + "; did you mean " + *nearest + "?";
+}
+
 CLI::Validator one_of(const std::vector<std::string>& words) {
-  return CLI::IsMember(words, CLI::ignore_case);
+  const auto take = [words](std::string& word) {
+    const std::string small = CLI::detail::to_lower(word);
+    for (const std::string& known : words) {
+      if (CLI::detail::to_lower(known) != small) continue;
+      word = known;
+      return std::string();
+    }
+    return with_nearest(fmt::format("'{}' is none of {}", word, fmt::join(words, ", ")), small,
+                        words);
+  };
+  return {take, fmt::format("{{{}}}", fmt::join(words, ","))};
 }
 
 CLI::Validator unit_name() { return one_of({"mm", "m", "inch", "um", "µm"}); }
+
+CLI::Option* add_file(CLI::App& command, const std::string& name, std::filesystem::path& file,
+                      const std::string& help) {
+  return command.add_option(name, file, help)->type_name("FILE");
+}
 
 void add_example(CLI::App& command, const std::string& example) {
   command.footer(example + "\n" + command.get_parent()->get_footer());
@@ -52,6 +84,12 @@ void refuse_to_overwrite(const std::filesystem::path& output,
     refuse_if(!output.empty() && std::filesystem::equivalent(output, input, neither),
               output.string(), "writing it would destroy an input: name another file");
   }
+}
+
+void check_output(const std::filesystem::path& output,
+                  std::initializer_list<std::filesystem::path> inputs) {
+  refuse_to_overwrite(output, inputs);
+  if (!output.empty()) require_writable(output);
 }
 
 CLI::Validator whole_number(const std::string& what) {

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "answers/formats/csv_writer.h"
 #include "answers/formats/format.h"
@@ -164,6 +163,8 @@ std::unique_ptr<ContactFile> open_contact_file(const std::filesystem::path& file
 }
 
 }  // namespace
+
+std::string contact_endings() { return endings_with_programs(kContactFormats); }
 
 void check_contact_file(const std::filesystem::path& file) {
   static_cast<void>(format_by_ending("--contacts", file, kContactFormats));

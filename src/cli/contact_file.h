@@ -2,10 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "answers/bodies.h"
@@ -13,6 +13,9 @@
 #include "ist/tree/bounds.h"
 
 namespace ist::cli {
+
+/// Returns the endings of contact files with the programs that open them.
+[[nodiscard]] std::string contact_endings();
 
 /// Throws a Refusal if the name of the file has no ending of a contact file.
 void check_contact_file(const std::filesystem::path& file);

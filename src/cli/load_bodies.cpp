@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 
@@ -16,10 +15,10 @@
 #include "answers/refusals.h"
 #include "cli/common_options.h"
 #include "cli/progress_bar.h"
-#include "ist/base/error.h"
+#include "ist/base/counted.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/mesh_source.h"
-#include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 
 namespace ist::cli {
@@ -32,10 +31,10 @@ namespace {
 // the other file may state no unit, and would be taken to be in this file's unit.
 void require_unit(LengthUnit told, LengthUnit stated, const char* option, const std::string& file) {
   refuse_if(contradict(told, stated), option,
-            fmt::format("{} says that its unit is {}: name the unit of the first file by --unit, "
-                        "and of the second by --unit-moving; if the file is wrong, convert it to "
-                        "STL, PLY or OBJ, which say no unit",
-                        file, to_string(stated)));
+            "{} says that its unit is {}: name the unit of the first file by --unit, "
+            "and of the second by --unit-moving; if the file is wrong, convert it to "
+            "STL, PLY or OBJ, which say no unit",
+            file, to_string(stated));
 }
 
 // A body before its tree is built.
@@ -92,28 +91,26 @@ SphereTree take_tree(LoadedBody& body, const BodyFiles& files, double voxel_size
 double convert_unit(const LoadedBody& fixed, LoadedBody& moving, bool is_moving_told) {
   constexpr LengthUnit kUnknown = LengthUnit::kUnknown;
   refuse_if(is_moving_told && fixed.unit == kUnknown, "--unit-moving",
-            fmt::format("the unit of {} is not known: give --unit too", fixed.name()));
+            "the unit of {} is not known: give --unit too", fixed.name());
   if (fixed.unit == moving.unit) return 1;
   if (fixed.unit == kUnknown || moving.unit == kUnknown) {
     const bool is_fixed_known = moving.unit == kUnknown;
     const LoadedBody &known = is_fixed_known ? fixed : moving,
                      &other = is_fixed_known ? moving : fixed;
-    note(fmt::format(
-        "{} says no unit, and is taken to be in {}, as {} is: if it is not, give --unit "
-        "and --unit-moving",
-        other.name(), to_string(known.unit), known.name()));
+    note(
+        fmt::format("{} says no unit, and is taken to be in {}, as {} is: if it is not, give "
+                    "--unit and --unit-moving",
+                    other.name(), to_string(known.unit), known.name()));
     return 1;
   }
   refuse_if(moving.tree.has_value(), moving.name(),
-            fmt::format("the tree is in {}, and {} in {}: name the tree's mesh, and its unit by "
-                        "--unit-moving, and it is converted",
-                        to_string(moving.unit), fixed.name(), to_string(fixed.unit)));
-  refuse_if(
-      !is_moving_told, moving.name(),
-      fmt::format("its unit is {}, and the unit of {} is {}: give --unit-moving {} to convert "
-                  "the mesh",
-                  to_string(moving.unit), fixed.name(), to_string(fixed.unit),
-                  to_string(moving.unit)));
+            "the tree is in {}, and {} in {}: name the tree's mesh, and its unit by "
+            "--unit-moving, and it is converted",
+            to_string(moving.unit), fixed.name(), to_string(fixed.unit));
+  refuse_if(!is_moving_told, moving.name(),
+
+            "its unit is {}, and the unit of {} is {}: give --unit-moving {} to convert the mesh",
+            to_string(moving.unit), fixed.name(), to_string(fixed.unit), to_string(moving.unit));
   // Both in micrometres are whole numbers, so that the factor is rounded once.
   const double factor = std::round(1e6 * metres_per_unit(moving.unit)) /
                         std::round(1e6 * metres_per_unit(fixed.unit));
@@ -130,9 +127,9 @@ void check_frames(const LoadedBody& fixed, const LoadedBody& moving, PatientFram
   for (const LoadedBody* body : {&fixed, &moving}) {
     const bool turns = contradict(body->frame(), to_frame);
     refuse_if(turns && body->tree, body->name(),
-              fmt::format("the tree is in the frame {}: name its mesh, or build it again by 'ist "
-                          "build --to-frame {}'",
-                          to_string(body->frame()), to_string(to_frame)));
+              "the tree is in the frame {}: name its mesh, or build it again by 'ist "
+              "build --to-frame {}'",
+              to_string(body->frame()), to_string(to_frame));
     if (turns) {
       note(fmt::format("{} was turned from the frame {} to {}", body->name(),
                        to_string(body->frame()), to_string(to_frame)));
@@ -143,11 +140,10 @@ void check_frames(const LoadedBody& fixed, const LoadedBody& moving, PatientFram
   if (to_frame != PatientFrame::kUnknown || !contradict(fixed.frame(), moving.frame())) return;
   const PatientFrame common = moving.tree && !fixed.tree ? moving.frame() : fixed.frame();
   const bool both_are_trees = fixed.tree && moving.tree;
-  refuse_if(true, moving.name(),
-            fmt::format("its frame is {}, and the frame of {} is {}: {} --to-frame {}{}",
-                        to_string(moving.frame()), fixed.name(), to_string(fixed.frame()),
-                        both_are_trees ? "build it again of its mesh by 'ist build" : "give",
-                        to_string(common), both_are_trees ? "'" : " to turn the mesh"));
+  refuse_if(true, moving.name(), "its frame is {}, and the frame of {} is {}: {} --to-frame {}{}",
+            to_string(moving.frame()), fixed.name(), to_string(fixed.frame()),
+            both_are_trees ? "build it again of its mesh by 'ist build" : "give", to_string(common),
+            both_are_trees ? "'" : " to turn the mesh");
 }
 
 // Returns the voxel size of bodies without a --voxel-size, and says so on stderr.
@@ -184,9 +180,8 @@ void warn_of_units(const LoadedBody& fixed, const LoadedBody& moving) {
 
 CheckedMesh load_mesh(const std::filesystem::path& file) {
   if (is_tree_file(file)) {
-    throw Error(
-        ErrorCode::kNotAMesh,
-        fmt::format("{}: this is a tree: name the mesh that it was built from", file.string()));
+    throw_error(ErrorCode::kNotAMesh, "{}: this is a tree: name the mesh that it was built from",
+                file.string());
   }
   CheckedMesh checked{read_mesh(file), {}};
   MeshReport report = check_mesh(checked.mesh);
@@ -216,15 +211,16 @@ void check_voxel_size(const std::optional<double>& voxel_size) {
 
 SphereTree build_with_progress(const std::string& name, TriangleMesh mesh,
                                const BuildOptions& options, std::vector<std::string>& warnings,
-                               BuildReport* report) {
-  ProgressBar progress;
+                               BuildReport* report, Progress* progress) {
+  std::optional<ProgressBar> bar;
+  if (progress == nullptr) progress = &bar.emplace();
   BuildReport own;
   BuildReport& filled = report != nullptr ? *report : own;
-  SphereTree tree = build_tree(std::move(mesh), options, &filled, &progress);
+  SphereTree tree = build_tree(std::move(mesh), options, &filled, progress);
   if (filled.turned_components > 0) {
-    warnings.push_back(fmt::format("{}: {} closed component{} inside out: turned outward", name,
-                                   filled.turned_components,
-                                   filled.turned_components == 1 ? " was" : "s were"));
+    warnings.push_back(fmt::format(
+        "{}: {} inside out: turned outward", name,
+        counted(filled.turned_components, "closed component was", "closed components were")));
   }
   return tree;
 }

@@ -8,6 +8,7 @@
 
 #include "answers/bodies.h"
 #include "cli/cli11_fwd.h"
+#include "ist/base/progress.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/sphere_tree.h"
 
@@ -31,12 +32,13 @@ void print_warnings(const std::vector<std::string>& warnings);
 /// Refuses a --voxel-size of 0.
 void check_voxel_size(const std::optional<double>& voxel_size);
 
-/// Builds a tree under a progress bar. Adds a warning that begins with `name` if components were
-/// turned outward.
+/// Builds a tree under a progress bar: its own, or `progress`. Adds a warning that begins with
+/// `name` if components were turned outward.
 [[nodiscard]] SphereTree build_with_progress(const std::string& name, TriangleMesh mesh,
                                              const BuildOptions& options,
                                              std::vector<std::string>& warnings,
-                                             BuildReport* report = nullptr);
+                                             BuildReport* report = nullptr,
+                                             Progress* progress = nullptr);
 
 /// The files of two bodies: each a mesh to build, or a tree to read.
 struct BodyFiles {

@@ -4,24 +4,21 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
-#include <limits>
 #include <memory>
 #include <new>
-#include <optional>
 #include <sstream>
 #include <string>
-#include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "answers/refusals.h"
 #include "cli/app.h"
+#include "cli/common_options.h"
 #include "cli/exit_code.h"
 #include "cli/interruption.h"
 #include "cli/terminal.h"
 #include "ist/base/error.h"
 #include "ist/base/files.h"
-#include "loop/scene/spelling.h"
 
 namespace ist::cli {
 
@@ -45,19 +42,6 @@ ExitCode exit_code(ErrorCode code) {
     default:
       return kBadInput;
   }
-}
-
-std::string with_nearest(const std::string& why, const std::string& word,
-                         const std::vector<std::string>& known) {
-  const std::string* nearest = nullptr;
-  std::size_t fewest = std::numeric_limits<std::size_t>::max();
-  for (const std::string& each : known) {
-    const std::size_t changes = edits(word, each);
-    if (!looks_like(word, each) || changes >= fewest) continue;
-    fewest = changes;
-    nearest = &each;
-  }
-  return nearest == nullptr ? why : why + "; did you mean " + *nearest + "?";
 }
 
 // The words of the version before.
@@ -135,6 +119,7 @@ int tell_usage(const CLI::App& app, const std::string& wrong, int argc, char** a
 }
 
 int run(int argc, char** argv) {
+  if (argc > 0) set_command_word(argv[0]);
   install_signal_handlers();
   const std::unique_ptr<CLI::App> app = make_app();
   std::vector<std::string> words = words_of(argc, argv);

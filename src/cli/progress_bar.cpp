@@ -5,6 +5,7 @@
 #include <sys/types.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
@@ -12,7 +13,6 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
-#include <thread>
 
 namespace ist::cli {
 namespace {
@@ -26,8 +26,8 @@ constexpr std::string_view kClear = "\r\033[K";
 std::mutex line_mutex;
 bool line_is_drawn = false;
 
-void draw(const Progress& progress) {
-  const double fraction = progress.fraction();
+void draw(const ProgressBar& progress) {
+  const double fraction = progress.drawn_fraction();
   const auto filled = static_cast<std::size_t>(fraction * static_cast<double>(kWidth));
   const std::string line =
       fmt::format("{}[{}{}] {:3.0f} %  {}", kClear, std::string(filled, '#'),
@@ -38,7 +38,7 @@ void draw(const Progress& progress) {
   std::fflush(stderr);
 }
 
-void show(const Progress& progress, const std::stop_token& end) {
+void show(const ProgressBar& progress, const std::stop_token& end) {
   std::mutex mutex;
   std::unique_lock lock(mutex);
   std::condition_variable_any ended;
@@ -58,9 +58,21 @@ void show(const Progress& progress, const std::stop_token& end) {
 
 }  // namespace
 
-ProgressBar::ProgressBar() {
+ProgressBar::ProgressBar(unsigned parts) : parts_(parts) {
   if (isatty(STDERR_FILENO) == 0) return;
   thread_ = std::jthread([this](const std::stop_token& end) { show(*this, end); });
+}
+
+double ProgressBar::drawn_fraction() const noexcept {
+  if (parts_ == 0) return fraction();
+  return std::min(1.0, static_cast<double>(parts_done_.load(std::memory_order_relaxed)) / parts_);
+}
+
+void print_past_progress_bar(const std::string& lines) {
+  const std::lock_guard lock(line_mutex);
+  const std::string text = (line_is_drawn ? std::string(kClear) : std::string()) + lines;
+  line_is_drawn = false;
+  std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
 void abandon_progress_bar() noexcept {

@@ -1,7 +1,5 @@
 #include "cli/query_options.h"
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
@@ -17,59 +15,50 @@ using namespace answers;
 namespace {
 
 void add_engine_options(CLI::App& command, QuestionOptions& options) {
-  const std::string group = "Engine, and its times";
+  command.option_defaults()->group("Engine, and its times");
   command
       .add_option("--spheres", options.spheres,
                   "bounds of the nodes; by default the tightest that both bodies have")
-      ->transform(one_of(policy_names()))
-      ->group(group);
+      ->transform(one_of(policy_names()));
   command
-      .add_option(
-          "--engine", options.engines,
-          "times simd, the fast query of leaf pairs, or reference, the published one; given "
-          "twice, both in turn")
+      .add_option("--engine", options.engines,
+                  "times simd, the fast query of leaf pairs, or reference, the published one; "
+                  "given twice, both in turn")
       ->transform(one_of({kEngineNames.begin(), kEngineNames.end()}))
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->default_str(std::string(kEngineNames.front()))
-      ->group(group);
+      ->default_str(std::string(kEngineNames.front()));
   command
       .add_option("--workers", options.workers,
                   "threads of simd; a second one helps if queries follow each other at once")
       ->check(CLI::Range(1, 2))
-      ->capture_default_str()
-      ->group(group);
+      ->capture_default_str();
   command
       .add_option("--target", options.target,
-                  "instruction set of simd, one that ist --version lists; by default IST_TARGET "
-                  "of the environment, or the first. All answer alike")
-      ->type_name("NAME")
-      ->group(group);
+                  "instruction set of simd, one that ist --version lists; by default IST_TARGET of "
+                  "the environment, or the first. All answer alike")
+      ->type_name("NAME");
   command.add_option("--repeat", options.repeat, "times that each pose is timed; prints --timing")
       ->check(CLI::Range(1, 1000000))
-      ->capture_default_str()
-      ->group(group);
+      ->capture_default_str();
   command
       .add_option("--max-tests", options.questions.max_tests,
                   "stop each question after this number of tests; distance and depth are then "
                   "wider intervals, and touch may be near")
-      ->transform(whole_number("the number of tests"))
-      ->group(group);
-  command
-      .add_flag("--verify", options.verify,
-                "run each engine at each pose once more and check its leaf pairs against the "
-                "guarantee, some 0.1 s a pose; exit code 5 if it is broken")
-      ->group(group);
-  command.add_flag("--timing", options.timing, "print leaf pairs, tests and times too")
-      ->group(group);
+      ->transform(whole_number("the number of tests"));
+  command.add_flag("--verify", options.verify,
+                   "run each engine at each pose once more and check its leaf pairs against the "
+                   "guarantee, some 0.1 s a pose; exit code 5 if it is broken");
+  command.add_flag("--timing", options.timing, "print leaf pairs, tests and times too");
+  command.option_defaults()->group("Options");
 }
 
 }  // namespace
 
 void QuestionOptions::check() const {
   for (const std::string& name : engines) {
-    refuse_if(std::count(engines.begin(), engines.end(), name) > 1, "--engine",
-              fmt::format("{} is named twice", name));
+    refuse_if(std::count(engines.begin(), engines.end(), name) > 1, "--engine", "{} is named twice",
+              name);
   }
   refuse_if(questions.max_tests && verify, "--max-tests",
             "contradicts --verify, which checks complete answers");
@@ -104,11 +93,9 @@ BodyFiles QuestionOptions::body_files() const {
 
 void add_query_options(CLI::App& command, QuestionOptions& options) {
   options.subcommand = command.get_name();
-  command.add_option("FIXED", options.files.fixed, "mesh or tree of the body that stays")
-      ->type_name("FILE")
+  add_file(command, "FIXED", options.files.fixed, "mesh or tree of the body that stays")
       ->required();
-  command.add_option("MOVING", options.files.moving, "mesh or tree of the body that is moved")
-      ->type_name("FILE")
+  add_file(command, "MOVING", options.files.moving, "mesh or tree of the body that is moved")
       ->required();
   command.add_option(
       "--voxel-size", options.files.voxel_size,
@@ -117,29 +104,24 @@ void add_query_options(CLI::App& command, QuestionOptions& options) {
       "a mesh gets voxels only if --contacts, an option of the engine or a tree "
       "without triangles needs them");
   command
-      .add_option("--distance", options.questions.distance,
-                  "how sharp the distance of the surfaces shall be; by default a 10,000th of that "
-                  "extent")
+      .add_option(
+          "--distance", options.questions.distance,
+          "how sharp the distance of the surfaces shall be; by default a 10,000th of that extent")
       ->check(tolerance());
   command
-      .add_option(
-          "--depth", options.questions.depth,
-          "how sharp the penetration depth shall be, by default a 10,000th of that extent; it is "
-          "how deep the deepest point of either surface lies in the other body")
+      .add_option("--depth", options.questions.depth,
+                  "how sharp the penetration depth shall be, by default a 10,000th of that extent; "
+                  "it is how deep the deepest point of either surface lies in the other body")
       ->check(tolerance());
   command.add_flag("--exact", options.questions.triangle_pairs,
                    "count all pairs of triangles that meet");
-  command
-      .add_option(
-          "--contacts", options.contacts,
-          "write leaf pairs, and the contact points that they are reduced to, at most "
-          "32 a pose, in fixed coordinates, to this file, by its ending: .jsonl, .csv, .vtp "
-          "or .ply")
-      ->type_name("FILE");
-  command.add_flag(
-      "--fail-if-touching", options.fail_if_touching,
-      "exit code 6 where the bodies touch, or may, or one lies in the other, at any pose; 1 where "
-      "that is unknown");
+  add_file(command, "--contacts", options.contacts,
+           "write leaf pairs, and the contact points that they are reduced to, at most 32 a pose, "
+           "in fixed coordinates, to this file, by its ending: " +
+               contact_endings());
+  command.add_flag("--fail-if-touching", options.fail_if_touching,
+                   "exit code 6 where the bodies touch, or may, or one lies in the other, at any "
+                   "pose; 1 where that is unknown");
   add_units_and_frame(command, options.files);
   add_max_memory(command, options.files.max_memory);
   command.add_flag("--json", options.json, "print one JSON object a line");

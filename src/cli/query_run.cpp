@@ -64,25 +64,23 @@ void verify(Engines& engines, const Bodies& bodies, const std::vector<AskedPose>
         answers.push_back({result, engine.leaf_pairs(), engine.nested()});
       }
       if (const std::optional<Violation> violation = check.check(poses[i].pose, answers)) {
-        throw Failure(
-            kGuaranteeBroken,
-            fmt::format("pose {}, engine {}: {}. This is an error in ist: please report it with "
-                        "both bodies and the pose",
-                        i, engines[violation->answer].name(), violation->detail));
+        throw Failure(kGuaranteeBroken,
+                      fmt::format("pose {}, engine {}: {}. This is an error in ist: please report "
+                                  "it with both bodies and the pose",
+                                  i, engines[violation->answer].name(), violation->detail));
       }
       progress.add(1);
     }
   }
   const bool by_triangles = !is_implicit(bodies.policy) && check.knows_geometry();
   for (const Engine& engine : engines) {
-    std::fprintf(
-        stderr,
-        "verified, %s: at each of %zu poses, the bounds of every leaf pair overlap, and no "
-        "pair of voxels whose %s is missing\n",
-        std::string(engine.name()).c_str(), poses.size(),
-        !engine.nested() ? "cubes intersect"
-        : by_triangles   ? "bounds overlap or whose triangles cross"
-                         : "bounds overlap");
+    std::fprintf(stderr,
+                 "verified, %s: at each of %zu poses, the bounds of every leaf pair overlap, and "
+                 "no pair of voxels whose %s is missing\n",
+                 std::string(engine.name()).c_str(), poses.size(),
+                 !engine.nested() ? "cubes intersect"
+                 : by_triangles   ? "bounds overlap or whose triangles cross"
+                                  : "bounds overlap");
   }
 }
 

@@ -22,6 +22,11 @@ bool has_colours() {
          (kind == nullptr || std::string_view(kind) != "dumb");
 }
 
+std::string& stored_command_word() {
+  static std::string word = "ist";
+  return word;
+}
+
 NamedSources read(const NamedFiles& files) {
   NamedSources sources;
   for (const auto& [name, file] : files) sources.emplace_back(name, source_of(file));
@@ -36,6 +41,19 @@ std::string painted(std::string_view text, TextColour colour) {
   const char* code = colour == TextColour::kRed ? "31" : colour == TextColour::kYellow ? "33" : "1";
   return fmt::format("\033[{}m{}\033[0m", code, text);
 }
+
+std::string quoted(const std::string& text) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+void set_command_word(const char* started) { stored_command_word() = quoted(started); }
+
+const std::string& command_word() { return stored_command_word(); }
 
 void print_json(const nlohmann::ordered_json& line) { fmt::print("{}\n", json_text(line)); }
 

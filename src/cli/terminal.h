@@ -18,6 +18,14 @@ enum class TextColour { kRed, kYellow, kBold };
 /// (no-color.org), else the text alone.
 [[nodiscard]] std::string painted(std::string_view text, TextColour colour);
 
+/// Returns a text as a shell reads it, quoted if necessary.
+[[nodiscard]] std::string quoted(const std::string& text);
+
+/// Sets the word by which the user started the command, argv[0].
+void set_command_word(const char* started);
+/// Returns this word as a shell reads it, for lines that the user may copy; `ist` if it is not set.
+[[nodiscard]] const std::string& command_word();
+
 /// Prints JSON as a line of stdout.
 void print_json(const nlohmann::ordered_json& line);
 

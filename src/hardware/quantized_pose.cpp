@@ -11,6 +11,7 @@
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/pose.h"
+#include "ist/base/throw_error.h"
 #include "ist/hardware/table_rom.h"
 #include "ist/tree/implicit_ball.h"
 #include "ist/tree/tree_parts.h"
@@ -133,8 +134,7 @@ QuantizedPose quantize_pose(const Eigen::Isometry3d& pose, const Lattice& fixed,
   const ScopedFloatEnvironment environment;
   const std::optional<Eigen::Isometry3d> rigid = project_to_rigid(pose);
   if (!rigid) {
-    throw Error(ErrorCode::kPoseInvalid,
-                fmt::format("the pose is not a rigid motion: {}", why_not_rigid(pose)));
+    throw_error(ErrorCode::kPoseInvalid, "the pose is not a rigid motion: {}", why_not_rigid(pose));
   }
   const Motion motion = frame_motion(*rigid, fixed, moving);
   const double pad = std::ceil(pad_of(motion, moving) / kLsb);

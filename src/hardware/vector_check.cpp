@@ -5,8 +5,8 @@
 
 #include "hardware/vector_file.h"
 #include "hardware/xxh64.h"
-#include "ist/base/error.h"
 #include "ist/base/files.h"
+#include "ist/base/throw_error.h"
 
 namespace ist {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t kHeaderLines = 8, kCountLine = 3;
 
 [[noreturn]] void bad_file(const std::string& place, const std::string& what) {
-  throw Error(ErrorCode::kInputInvalid, fmt::format("{}: {}", place, what));
+  throw_error(ErrorCode::kInputInvalid, "{}: {}", place, what);
 }
 
 // Reads a file line by line, in memory that does not depend on its size.

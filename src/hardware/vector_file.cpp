@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "hardware/xxh64.h"
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 
 namespace ist {
 namespace {
@@ -59,18 +59,18 @@ void for_each_number(Vector& vector, const Use& use) {
 }
 
 [[noreturn]] void malformed(std::string_view place, const std::string& what) {
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{}: {}; make the file with 'ist table --vectors', or see "
-                          "src/hardware/README.md for the format of a line",
-                          place, what));
+  throw_error(ErrorCode::kInputInvalid,
+              "{}: {}; make the file with 'ist table --vectors', or see "
+              "src/hardware/README.md for the format of a line",
+              place, what);
 }
 
 [[noreturn]] void out_of_range(std::string_view place, const VectorField& field,
                                std::string_view digits, const std::string& allowed) {
-  throw Error(ErrorCode::kFixedPointRange,
-              fmt::format("{}, field {}: {} does not fit: {}; scale the numbers to the formats in "
-                          "src/hardware/README.md",
-                          place, field.name, digits, allowed));
+  throw_error(ErrorCode::kFixedPointRange,
+              "{}, field {}: {} does not fit: {}; scale the numbers to the formats in "
+              "src/hardware/README.md",
+              place, field.name, digits, allowed);
 }
 
 // Removes the digits of the next number from the line, and returns them.

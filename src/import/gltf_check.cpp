@@ -1,5 +1,3 @@
-#include "import/gltf_check.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,10 +6,10 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
+#include "import/format_checks.h"
 #include "import/placed_polygons.h"
 #include "ist/base/printable.h"
 

@@ -14,9 +14,8 @@
 
 #include "import/placed_polygons.h"
 #include "import/process_limits.h"
+#include "import/readers.h"
 #include "import/scene_format.h"
-#include "import/scene_reader.h"
-#include "import/threemf_reader.h"
 #include "ist/mesh/import/import_message.h"
 
 namespace ist::import {

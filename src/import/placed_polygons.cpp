@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "ist/base/counted.h"
 #include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/import/import_message.h"
 
@@ -83,8 +84,8 @@ void PlacedPolygons::require_polygons() const {
   if (coordinates_.empty())
     refuse(ErrorCode::kMeshEmpty, "", "the scene has no mesh; export the mesh again");
   refuse(ErrorCode::kMeshPointsOnly, "",
-         fmt::format("the scene has {} vertices, but no triangle; export the surface as polygons",
-                     coordinates_.size() / 3));
+         fmt::format("the scene has {}, but no triangle; export the surface as polygons",
+                     counted(coordinates_.size() / 3, "vertex", "vertices")));
 }
 
 }  // namespace ist::import

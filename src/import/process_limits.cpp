@@ -9,7 +9,6 @@
 
 #include <cerrno>
 #include <csignal>
-#include <cstdint>
 
 namespace ist::import {
 namespace {

@@ -1,5 +1,3 @@
-#include "import/scene_reader.h"
-
 #include <assimp/config.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
@@ -13,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "import/gltf_check.h"
+#include "import/format_checks.h"
+#include "import/readers.h"
 #include "import/scene_format.h"
 #include "import/side_files.h"
-#include "import/xml_check.h"
 #include "ist/base/printable.h"
 #include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/import/import_message.h"
@@ -166,11 +164,10 @@ PlacedPolygons read_scene(Input input, std::string_view format) {
   Assimp::DefaultLogger::kill();
   const bool unread = scene == nullptr || scene->mRootNode == nullptr;
   if (!files->missing().empty() && (unread || !loss.empty()))
-    refuse(
-        ErrorCode::kFileUnreadable, "",
-        fmt::format("it names the file '{}', which is not in its folder or below: copy it there, "
-                    "or export one file that holds all",
-                    printable(files->missing(), 200)));
+    refuse(ErrorCode::kFileUnreadable, "",
+           fmt::format("it names the file '{}', which is not in its folder or below: copy it "
+                       "there, or export one file that holds all",
+                       printable(files->missing(), 200)));
   if (unread || !loss.empty())
     refuse_scene(unread, loss.empty() ? importer.GetErrorString() : loss, files->main_file());
   PlacedPolygons placed;

@@ -8,7 +8,6 @@
 #include <assimp/IOStream.hpp>
 #include <cstring>
 #include <memory>
-#include <optional>
 #include <system_error>
 #include <utility>
 

@@ -54,10 +54,9 @@ SlicerParts::SlicerParts(ZipParts& archive) {
         const pugi::xml_attribute first = volume.attribute("firstid"),
                                   last = volume.attribute("lastid");
         if (!first || !last)
-          refuse(
-              ErrorCode::kNotAMesh, kPrusa,
-              "a modifier does not name its triangles (firstid, lastid): export the plate as STL "
-              "in the slicer");
+          refuse(ErrorCode::kNotAMesh, kPrusa,
+                 "a modifier does not name its triangles (firstid, lastid): export the plate as "
+                 "STL in the slicer");
         left_out_[object.attribute("id").as_uint()].push_back(
             {first.as_ullong(), last.as_ullong()});
       }

@@ -1,5 +1,3 @@
-#include "import/threemf_reader.h"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -13,6 +11,7 @@
 #include <system_error>
 #include <vector>
 
+#include "import/readers.h"
 #include "import/scene_format.h"
 #include "import/slicer_parts.h"
 #include "import/zip_parts.h"
@@ -265,10 +264,8 @@ class ThreeMfReader {
       left.pop_back();
       const Object& object = use.model->object(use.object);
       if (use.depth > kDeepest)
-        use.model->fail(
-            fmt::format("object {} holds itself, or is nested too deeply; export the "
-                        "mesh again",
-                        use.object));
+        use.model->fail(fmt::format(
+            "object {} holds itself, or is nested too deeply; export the mesh again", use.object));
       if (!object.is_body) {
         left_out_ = true;
         continue;

@@ -1,5 +1,3 @@
-#include "import/xml_check.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <pugixml.hpp>
 #include <string>
 
+#include "import/format_checks.h"
 #include "import/placed_polygons.h"
 #include "ist/base/printable.h"
 #include "ist/mesh/format/text_reader.h"

@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -11,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "ist/base/error.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/mesh.h"
 #include "ist/models/models.h"
 #include "models/jaw/jaw_section.h"
@@ -236,9 +235,9 @@ double round_down(double height) {
 TriangleMesh make_splint(std::uint64_t seed, double opening) {
   const ScopedFloatEnvironment environment;
   if (!(opening >= 0 && opening <= kWidestOpening)) {
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("a splint for jaws {} mm open: give an opening from 0 to {} mm",
-                            opening, kWidestOpening));
+    throw_error(ErrorCode::kArgumentInvalid,
+                "a splint for jaws {} mm open: give an opening from 0 to {} mm", opening,
+                kWidestOpening);
   }
   const Horseshoe horseshoe;
   const ClearanceMap upper(make_jaw(Jaw::kUpper, seed), horseshoe.area());
@@ -252,11 +251,11 @@ TriangleMesh make_splint(std::uint64_t seed, double opening) {
     thickness = std::min(thickness, top[i] - bottom[i]);
   }
   if (thickness < kLeastThickness) {
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("a splint between the jaws of seed {} at an opening of {} mm would be "
-                            "{:.2f} mm thick at its thinnest: give an opening of {:.2f} mm or more",
-                            seed, opening, std::max(thickness, 0.0),
-                            opening + kLeastThickness - thickness + 0.005));
+    throw_error(ErrorCode::kArgumentInvalid,
+                "a splint between the jaws of seed {} at an opening of {} mm would be "
+                "{:.2f} mm thick at its thinnest: give an opening of {:.2f} mm or more",
+                seed, opening, std::max(thickness, 0.0),
+                opening + kLeastThickness - thickness + 0.005);
   }
   return horseshoe.close(top, bottom);
 }

@@ -43,7 +43,7 @@ class Table {
 
  private:
   OutputFile npy_;
-  ContentHash hash_;
+  Checksum hash_;
 };
 
 // Reads the rows of a part into the table. Compares the part's header, row numbers and checksum.
@@ -53,7 +53,7 @@ void merge_part(const SweepFolder& folder, const RowLayout& layout, std::uint64_
   const std::uint64_t rows = folder.identity().rows_of(part);
   const std::string header = npy_header(layout, rows);
   InputFile file(folder.part_file(part));
-  ContentHash hash;
+  Checksum hash;
   std::string begin(header.size(), ' ');
   if (file.read(begin.data(), begin.size()) < begin.size() || begin != header) {
     fail_damaged(folder, part);

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "ist/base/checksum.h"
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 
 namespace ist {
 namespace {
@@ -30,8 +30,7 @@ const char* npy_type(ColumnType type) {
 }
 
 [[noreturn]] void fail(const InputFile& file, std::string_view wrong, std::string_view remedy) {
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{}: {}: {}", file.path().string(), wrong, remedy));
+  throw_error(ErrorCode::kInputInvalid, "{}: {}: {}", file.path().string(), wrong, remedy);
 }
 
 constexpr std::string_view kSave = "write it by numpy.save()";
@@ -73,9 +72,8 @@ NpyPoses::NpyPoses(const std::filesystem::path& file)
     : file_(file), written_at_(file_.written_at()), hash_(hash_of_file(file_)) {
   const NpyDoubles array = read_npy_header(file_);
   if (array.shape.size() != 3 || array.shape[1] != 4 || array.shape[2] != 4) {
-    throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{}: its shape is ({}): write poses of shape (N, 4, 4)", file.string(),
-                            fmt::join(array.shape, ", ")));
+    throw_error(ErrorCode::kInputInvalid, "{}: its shape is ({}): write poses of shape (N, 4, 4)",
+                file.string(), fmt::format("{}", fmt::join(array.shape, ", ")));
   }
   count_ = array.shape[0];
   offset_ = array.offset;
@@ -101,10 +99,10 @@ std::string NpyPoses::identity() const { return fmt::format("file {} count {}", 
 
 void NpyPoses::require_unchanged() const {
   if (file_.written_at() == written_at_) return;
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{}: the file was written since the sweep was opened: begin anew, with a "
-                          "folder of its own",
-                          file_.path().string()));
+  throw_error(ErrorCode::kInputInvalid,
+              "{}: the file was written since the sweep was "
+              "opened: begin anew, with a folder of its own",
+              file_.path().string());
 }
 
 std::string npy_header(const RowLayout& layout, std::uint64_t rows) {

@@ -1,7 +1,5 @@
 #include "sweep/pose_source.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <numbers>
 #include <utility>

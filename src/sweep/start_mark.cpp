@@ -8,8 +8,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "ist/base/error.h"
 #include "ist/base/files.h"
+#include "ist/base/throw_error.h"
 
 namespace ist {
 namespace {
@@ -32,10 +32,10 @@ void lock(int descriptor) {
 }  // namespace
 
 void fail_overlap(const SweepFolder& folder, std::uint64_t part) {
-  throw Error(ErrorCode::kPartBusy,
-              fmt::format("{}: another process is making this part now: shares overlap; give each "
-                          "process a share of its own (--share k/N), or wait for the other one",
-                          folder.part_file(part).string()));
+  throw_error(ErrorCode::kPartBusy,
+              "{}: another process is making this part now: shares overlap; give each "
+              "process a share of its own (--share k/N), or wait for the other one",
+              folder.part_file(part).string());
 }
 
 PartStarts starts_of(const SweepFolder& folder, std::uint64_t part) {

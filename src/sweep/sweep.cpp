@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "ist/base/checksum.h"
-#include "ist/base/error.h"
 #include "ist/base/files.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/parallel.h"
+#include "ist/base/throw_error.h"
 #include "ist/measure/require.h"
 #include "ist/tree/mesh_source.h"
 #include "ist/tree/sphere_tree.h"
@@ -48,7 +48,7 @@ SweepIdentity identity_of(const SweepFile& file) {
   const std::string text =
       fmt::format("ist sweep 1\nfixed {}\nmoving {}\nposes {}\n{}\n", file.fixed.hash,
                   file.moving.hash, file.poses->identity(), questions_text(file));
-  ContentHash hash;
+  Checksum hash;
   hash.add(text.data(), text.size());
   return {hash.text(), file.poses->count(), file.rows_per_part};
 }
@@ -57,10 +57,10 @@ SweepIdentity identity_of(const SweepFile& file) {
 SphereTree read_same_tree(const SweepFile::Body& body) {
   SphereTree tree = read_tree(body.tree);
   if (hash_of_file(body.tree) == body.hash) return tree;
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{}: the tree changed since the sweep was opened: take the tree that the "
-                          "sweep was made for, or begin anew, with a folder of its own",
-                          body.tree.string()));
+  throw_error(ErrorCode::kInputInvalid,
+              "{}: the tree changed since the sweep was opened: take the tree that the "
+              "sweep was made for, or begin anew, with a folder of its own",
+              body.tree.string());
 }
 
 }  // namespace
@@ -92,8 +92,7 @@ std::shared_ptr<const Sweep::Bodies> Sweep::bodies() const {
     const std::string reason =
         contradiction(loaded->moving, "the tree", loaded->fixed, file_.fixed.tree.string());
     if (!reason.empty()) {
-      throw Error(ErrorCode::kInputInvalid,
-                  fmt::format("{}: {}", file_.moving.tree.string(), reason));
+      throw_error(ErrorCode::kInputInvalid, "{}: {}", file_.moving.tree.string(), reason);
     }
     const Query needs_the_spheres(loaded->fixed, loaded->moving, {.policy = file_.spheres});
     bodies_ = std::move(loaded);
@@ -156,7 +155,7 @@ Sweep::Outcome Sweep::run_part(const SweepFolder& folder, std::uint64_t part, st
   const auto begin = std::chrono::steady_clock::now();
   const std::shared_ptr<const Bodies> loaded = bodies();
   OutputFile rows(folder.part_file(part)), record(folder.record_file(part));
-  ContentHash hash;
+  Checksum hash;
   const auto write = [&](const void* data, std::size_t bytes) {
     rows.write(data, bytes);
     hash.add(data, bytes);

@@ -15,7 +15,6 @@
 #include "loop/scene/table_reader.h"
 #include "loop/scene/toml_document.h"
 #include "sweep/npy_file.h"
-#include "sweep/pose_source.h"
 
 namespace ist {
 namespace {
@@ -88,10 +87,11 @@ PoseGrid::Axis read_axis(TableReader& table) {
   PoseGrid::Axis axis;
   axis.turns = table.has("turn");
   if (axis.turns == table.has("move")) {
-    table.fail(
-        axis.turns ? "turn" : "move",
-        fmt::format("{} has {} 'move' and 'turn'", table.name(), axis.turns ? "both" : "neither"),
-        "give one: move = [x, y, z] along a direction, or turn = [x, y, z] about one");
+    table.refuse_misspelt();
+    table.fail(axis.turns ? "turn" : "move",
+               fmt::format("{} has {}", table.name(),
+                           axis.turns ? "both 'move' and 'turn'" : "neither 'move' nor 'turn'"),
+               "give one: move = [x, y, z] along a direction, or turn = [x, y, z] about one");
   }
   const std::string_view key = axis.turns ? "turn" : "move";
   axis.direction = table.vector(key, kDirection);

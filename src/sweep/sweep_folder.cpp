@@ -10,6 +10,7 @@
 
 #include "ist/base/checksum.h"
 #include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 #include "sweep/npy_file.h"
 #include "sweep/start_mark.h"
 #include "sweep/sweep_record.h"
@@ -83,17 +84,16 @@ PartStatus SweepFolder::look(std::uint64_t part) const {
     return status;
   }
   if (!std::filesystem::exists(record_file(part), missing)) {
-    throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{}: the part has no record beside it: remove it to make it anew",
-                            part_file(part).string()));
+    throw_error(ErrorCode::kInputInvalid,
+                "{}: the part has no record beside it: remove it to make it anew",
+                part_file(part).string());
   }
   const PartRecord record = read_part_record(record_file(part));
   if (record.sweep != identity_.hash || record.part != part ||
       record.rows != identity_.rows_of(part)) {
-    throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{}: the part is of another sweep, {}: remove it, and its record, to "
-                            "make it anew",
-                            part_file(part).string(), record.sweep));
+    throw_error(ErrorCode::kInputInvalid,
+                "{}: the part is of another sweep, {}: remove it, and its record, to make it anew",
+                part_file(part).string(), record.sweep);
   }
   status.seconds = record.seconds;
   status.checksum = record.checksum;
@@ -110,9 +110,9 @@ PartStatus SweepFolder::verify(std::uint64_t part) const {
 }
 
 void fail_damaged(const SweepFolder& folder, std::uint64_t part) {
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{}: the part is cut off or damaged: remove it to make it anew",
-                          folder.part_file(part).string()));
+  throw_error(ErrorCode::kInputInvalid,
+              "{}: the part is cut off or damaged: remove it to make it anew",
+              folder.part_file(part).string());
 }
 
 }  // namespace ist

@@ -1,12 +1,9 @@
 #include "sweep/sweep_record.h"
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
-#include <string_view>
 
-#include "ist/base/error.h"
 #include "ist/base/files.h"
+#include "ist/base/throw_error.h"
 
 namespace ist {
 namespace {
@@ -37,12 +34,10 @@ Json object_of(const SweepIdentity& identity, const RowLayout& layout) {
 std::string text_of(const Json& json) { return json.dump(1) + "\n"; }
 
 [[noreturn]] void fail_record(const std::filesystem::path& file) {
-  throw Error(
-      ErrorCode::kInputInvalid,
-      fmt::format("{}: the file is damaged, or no record of a sweep: remove it{}", file.string(),
-                  file.filename() == "sweep.json"
-                      ? "; the next run writes it anew"
-                      : ", and the part beside it, to make the part anew"));
+  throw_error(ErrorCode::kInputInvalid,
+              "{}: the file is damaged, or no record of a sweep: remove it{}", file.string(),
+              file.filename() == "sweep.json" ? "; the next run writes it anew"
+                                              : ", and the part beside it, to make the part anew");
 }
 
 Json read_object(const std::filesystem::path& file) {
@@ -89,16 +84,16 @@ void require_same_sweep(const std::filesystem::path& file, const SweepIdentity& 
   const Json json = read_object(file);
   const std::string hash = text_in(json, "sweep", file), version = text_in(json, "version", file);
   if (hash != identity.hash) {
-    throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{}: the folder is of another sweep, {}, and this one is {}: a tree, "
-                            "a pose or a question changed; give another folder",
-                            file.string(), hash, identity.hash));
+    throw_error(ErrorCode::kInputInvalid,
+                "{}: the folder is of another sweep, {}, and this one is {}: a tree, "
+                "a pose or a question changed; give another folder",
+                file.string(), hash, identity.hash);
   }
   if (version != IST_VERSION) {
-    throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{}: version {} of ist began this folder, and this is {}: go on with "
-                            "that version, or give another folder",
-                            file.string(), version, IST_VERSION));
+    throw_error(ErrorCode::kInputInvalid,
+                "{}: version {} of ist began this folder, and this is {}: go on with "
+                "that version, or give another folder",
+                file.string(), version, IST_VERSION);
   }
 }
 

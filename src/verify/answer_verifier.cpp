@@ -10,7 +10,6 @@
 #include "ist/tree/tree_parts.h"
 #include "ist/voxel/morton.h"
 #include "verify/frame_motion.h"
-#include "verify/leaf_geometry.h"
 
 namespace ist {
 namespace {

@@ -1,12 +1,6 @@
 #include "verify/leaf_geometry.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <array>
-#include <cmath>
-
-#include "ist/tree/tree_parts.h"
-#include "ist/voxel/morton.h"
 
 namespace ist {
 namespace {

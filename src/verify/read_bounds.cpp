@@ -4,8 +4,6 @@
 #include <cmath>
 #include <span>
 
-#include "ist/tree/tree_parts.h"
-
 namespace ist {
 
 std::uint32_t parent_of(const LinearOctree& octree, int level, std::uint32_t node) noexcept {

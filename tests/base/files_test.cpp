@@ -144,8 +144,11 @@ TEST(OutputFile, WritesThroughALinkWithoutReplacingIt) {
 
 TEST(OutputFile, AFolderThatDoesNotExistIsNamed) {
   const test::TempDir folder;
-  const auto error = error_of([&] { OutputFile file(folder.path() / "missing" / "out"); });
+  const std::filesystem::path file = folder.path() / "missing" / "out";
+  const auto error = error_of([&] { OutputFile output(file); });
   ASSERT_TRUE(error);
+  EXPECT_EQ(test::error_of([&] { require_writable(file); }).value().what(),
+            std::string(error->what()));
   EXPECT_EQ(error->code(), ErrorCode::kFileUnwritable);
   EXPECT_NE(std::string(error->what()).find("missing/out"), std::string::npos) << error->what();
   EXPECT_EQ(folder.entries(), 0u);
@@ -159,6 +162,29 @@ TEST(OutputFile, AFolderInTheFilesPlaceIsRefused) {
   });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kFileUnwritable);
+}
+
+TEST(OutputFile, IsCheckedBeforeLongWorkAndNotCreated) {
+  const test::TempDir folder;
+  const auto refused = [](const std::filesystem::path& file) {
+    return test::error_of([&] { require_writable(file); });
+  };
+  EXPECT_FALSE(refused(folder.path() / "new"));
+  EXPECT_FALSE(refused("new"));
+  EXPECT_FALSE(refused("/dev/null"));
+  EXPECT_EQ(folder.entries(), 0u);
+  const auto file = folder.write("old", "old");
+  EXPECT_FALSE(refused(file));
+  EXPECT_EQ(file_content(file), "old");
+  const auto folder_there = refused(folder.path()), file_as_folder = refused(file / "new");
+  ASSERT_TRUE(folder_there && file_as_folder);
+  EXPECT_EQ(folder_there->code(), ErrorCode::kFileUnwritable);
+  EXPECT_NE(std::string(folder_there->what()).find("Is a directory"), std::string::npos);
+  EXPECT_NE(std::string(file_as_folder->what()).find("Not a directory"), std::string::npos);
+  std::filesystem::create_directory(folder.path() / "read");
+  std::filesystem::permissions(folder.path() / "read", std::filesystem::perms::owner_read);
+  const bool may_write = ::access((folder.path() / "read").c_str(), W_OK) == 0;  // as root
+  EXPECT_EQ(refused(folder.path() / "read" / "new").has_value(), !may_write);
 }
 
 TEST(OutputFile, AFullDiskIsReported) {

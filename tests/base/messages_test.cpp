@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "ist/base/counted.h"
 #include "ist/base/error.h"
 #include "ist/base/printable.h"
 
@@ -22,6 +23,14 @@ TEST(Error, CarriesItsCodeAndItsText) {
   EXPECT_EQ(error.code(), ErrorCode::kMemoryLimit);
   EXPECT_STREQ(error.what(), "what, where and what to do");
   EXPECT_STREQ(to_string(error.code()), "memory-limit");
+}
+
+TEST(Counted, OneHasNoPlural) {
+  EXPECT_EQ(counted(0, "triangle"), "0 triangles");
+  EXPECT_EQ(counted(1u, "triangle"), "1 triangle");
+  EXPECT_EQ(counted(std::size_t{2}, "triangle"), "2 triangles");
+  EXPECT_EQ(counted(1, "vertex", "vertices"), "1 vertex");
+  EXPECT_EQ(counted(3, "vertex", "vertices"), "3 vertices");
 }
 
 TEST(Printable, KeepsTextAsItIs) {

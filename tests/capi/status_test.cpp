@@ -58,7 +58,7 @@ TEST(CVersion, IsTheHeadersAndTheProjects) {
 
 template <typename Exception>
 std::string thrown(const Exception& exception) {
-  return name(capi::guarded("f", [&](const capi::Call&) -> ist_status { throw exception; }));
+  return name(capi::guarded("f", [&](capi::Call&) { throw exception; }));
 }
 
 TEST(CGuard, TurnsEveryExceptionIntoACode) {
@@ -82,17 +82,25 @@ TEST(CGuard, KeepsAnErrorsCodeAndText) {
 
 TEST(CGuard, LeavesTheMessageAloneWhereNothingFails) {
   EXPECT_EQ(thrown(std::logic_error("a bug")), "internal-error");
-  EXPECT_EQ(capi::guarded("g", [](const capi::Call&) -> ist_status { return IST_OK; }), IST_OK);
+  EXPECT_EQ(capi::guarded("g", [](capi::Call&) {}), IST_OK);
   EXPECT_STREQ(ist_last_error_message(), "f: a bug");
+}
+
+TEST(CGuard, KeepsTheFirstOfTwoErrors) {
+  const auto failing = [](capi::Call& call) {
+    EXPECT_FALSE(call.need("a", nullptr));
+    call.fail(IST_NOT_A_MESH, "b");
+    throw std::logic_error("c");
+  };
+  EXPECT_EQ(name(capi::guarded("f", failing)), "null-argument");
+  EXPECT_STREQ(ist_last_error_message(), "f: a is NULL: pass a valid pointer");
 }
 
 TEST(CGuard, CutsAMessageThatIsTooLong) {
   const std::string text(10'000, 'x');
   EXPECT_EQ(thrown(std::logic_error(text)), "internal-error");
   EXPECT_EQ(std::string(ist_last_error_message()), "f: " + text.substr(0, 508));
-  const auto failing = [&](const capi::Call& call) {
-    return call.fail(IST_NOT_A_MESH, "{}", text);
-  };
+  const auto failing = [&](capi::Call& call) { call.fail(IST_NOT_A_MESH, "{}", text); };
   EXPECT_EQ(name(capi::guarded("function", failing)), "not-a-mesh");
   EXPECT_EQ(std::string(ist_last_error_message()), "function: " + text.substr(0, 501));
 }

@@ -87,8 +87,10 @@ TEST_F(Advise, ATable) {
   const std::string size = best.at("voxel_size").dump();
   EXPECT_TRUE(says(result.out, "  voxel size      error  certain bound"));
   EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '*'), 2);
-  EXPECT_TRUE(says(result.out, "ist build " + fixed_ + " -o fixed.ist --voxel-size " + size));
-  EXPECT_TRUE(says(result.out, "ist build " + moving_ + " -o moving.ist --voxel-size " + size));
+  EXPECT_TRUE(
+      says(result.out, IST_COMMAND + (" build " + fixed_) + " -o fixed.ist --voxel-size " + size));
+  EXPECT_TRUE(says(result.out,
+                   IST_COMMAND + (" build " + moving_) + " -o moving.ist --voxel-size " + size));
   EXPECT_FALSE(exists("fixed.ist"));
 }
 

@@ -119,6 +119,28 @@ TEST_F(Files, WhatCannotBeWrittenIsAFailure) {
   EXPECT_TRUE(says(result.err, "none/out.ply: "));
 }
 
+// A mesh that cannot be read shows that the output is checked first.
+TEST_F(Files, WhatCannotBeWrittenIsFoundBeforeTheWork) {
+  const std::string bad = write("bad.stl", "solid");
+  for (const std::string& folder : {path("none/"), path("bad.stl/")}) {
+    const std::vector<std::pair<std::vector<std::string>, std::string>> commands = {
+        {{"build", bad, "-o"}, "out.ist"},
+        {{"export", bad, "--what", "voxels", "--level", "0", "-o"}, "out.ply"},
+        {{"occlusion", bad, bad, "-o"}, "out.vtp"},
+        {{"collide", bad, bad, "--contacts"}, "out.csv"},
+        {{"approach", bad, bad, "--axis", "z", "--from", "0", "--to", "1", "--contacts"},
+         "out.csv"},
+        {{"run", bad, "--record"}, "out.csv"}};
+    for (auto [words, name] : commands) {
+      words.push_back(folder + name);
+      const CommandResult result = ist(words);
+      EXPECT_EQ(result.exit_code, 1) << words[0];
+      EXPECT_TRUE(result.err.starts_with("ist: " + folder + name + ": cannot create the file: "))
+          << result.err;
+    }
+  }
+}
+
 TEST_F(Files, InfoOfAMesh) {
   const auto lines = json_lines(ist_well({"info", ball(), "--json"}).out);
   ASSERT_EQ(lines.size(), 1u);
@@ -137,6 +159,7 @@ TEST_F(Files, InfoOfAMesh) {
   }
   EXPECT_EQ(line["warnings"], json::array());
   EXPECT_TRUE(says(ist_well({"info", ball()}).out, "320 triangles and 162 vertices"));
+  EXPECT_TRUE(says(ist_well({"info", mesh("one.stl", open_strip(1))}).out, ", 1 component\n"));
   const auto open = json_lines(ist_well({"info", mesh("open.stl", open_strip(2)), "--json"}).out);
   EXPECT_EQ(open.at(0)["boundary_edges"], 6);
   EXPECT_GT(open.at(0)["warnings"].size(), 0u);
@@ -314,7 +337,7 @@ TEST_F(Files, DemoMakesItsJawsAndClosesThem) {
   const CommandResult table = ist_well({"demo", "--voxel-size", "3"});
   EXPECT_TRUE(says(table.out, "published"));
   EXPECT_TRUE(says(table.out, "Their bite at dz = -0.6 mm:\ntouch yes, 0.407 to 0.419 mm deep"));
-  EXPECT_TRUE(says(table.out, "Try next: ist demo --keep"));
+  EXPECT_TRUE(says(table.out, std::string("Try next: ") + IST_COMMAND + " demo --keep"));
   EXPECT_EQ(std::count(table.out.begin(), table.out.end(), '|'), 8);  // a row each, and its legend
 
   // What it keeps are meshes for the other subcommands.

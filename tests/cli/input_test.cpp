@@ -7,7 +7,7 @@
 #include "answers/formats/csv_writer.h"
 #include "answers/refusals.h"
 #include "cli/cli_case.h"
-#include "cli/commands/advise_report.h"
+#include "cli/commands/reports.h"
 #include "ist/mesh/mesh.h"
 #include "support/data_dir.h"
 #include "support/effort.h"

@@ -4,6 +4,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -214,6 +215,33 @@ TEST_F(Interruption, ClearsTheProgressBar) {
     EXPECT_EQ(process.wait().exit_code, 128 + signal);
     terminal.await_end();
     EXPECT_TRUE(terminal.shown.ends_with("asking\r\033[K")) << terminal.shown;
+  }
+}
+
+// The percentages that a terminal has shown, in order.
+std::vector<int> percentages(const std::string& shown) {
+  std::vector<int> numbers;
+  for (std::size_t at = 0; (at = shown.find("] ", at)) != std::string::npos; ++at) {
+    numbers.push_back(std::atoi(shown.c_str() + at + 1));
+  }
+  return numbers;
+}
+
+TEST_F(Interruption, LongWorkHasOneProgressBarThatOnlyGrows) {
+  IST_SLOW();
+  const std::string body = ball();
+  const std::vector<std::vector<std::string>> commands = {
+      {"advise", body, body, "--budget-us", "300"},
+      {"bench", body, body, "--voxel-size", "0.5", "--seconds", "3"}};
+  for (const std::vector<std::string>& words : commands) {
+    Terminal terminal;
+    Process process = with_told_call("fputs", 0, words, terminal.name);
+    await_hold(process);
+    EXPECT_EQ(process.wait().exit_code, 0) << words[0];
+    terminal.await_end();
+    const std::vector<int> parts = percentages(terminal.shown);
+    EXPECT_FALSE(parts.empty()) << words[0];
+    EXPECT_TRUE(std::is_sorted(parts.begin(), parts.end())) << terminal.shown;
   }
 }
 

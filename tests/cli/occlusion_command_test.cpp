@@ -154,6 +154,11 @@ TEST_F(OcclusionCommand, ARegionLeavesOutWhatLiesBesideIt) {
                    "else is of the whole bodies\n"));
   EXPECT_TRUE(says(ist_well({"occlusion", sheet, two, "--region", within[1]}).out,
                    "divided in the middle of the fixed body's box within the region (assumed)"));
+  // Files for viewers say it too.
+  for (const char* name : {"region.ply", "region.glb"}) {
+    ist_well({"occlusion", sheet, two, "--region", within[1], "-o", path(name)});
+    EXPECT_TRUE(says(file_content(path(name)), "region: areas, contacts, shares")) << name;
+  }
   for (const char* bad : {"1,2,3,4,5", "1,2,3,4,5,x", "1,2,3,4,5,6,7"}) {
     refuses({"--json", "--region", bad}, 2, "give x0,y0,z0,x1,y1,z1, two corners of a box");
   }
@@ -284,7 +289,7 @@ TEST_F(OcclusionCommand, LabelsAreReadBeforeAnythingIsMeasured) {
   const CommandResult result = ist({"occlusion", lower, upper, "--labels-moving",
                                     write("labels.txt", "36\n"), "--numbering", "fdi", "--json"});
   EXPECT_EQ(result.exit_code, 3);
-  EXPECT_TRUE(says(result.err, "labels.txt: 1 labels for a mesh of 12 triangles"));
+  EXPECT_TRUE(says(result.err, "labels.txt: 1 label for a mesh of 12 triangles"));
 }
 
 TEST_F(OcclusionCommand, AnOpenBodyAndAFarOneAreSaid) {

@@ -137,8 +137,8 @@ TEST_F(Table, RefusesFilesThatAreNone) {
 
 TEST_F(Table, RefusesOptionsThatMakeNoSense) {
   refuses({}, "--format, --vectors, --check: give one of them");
-  refuses({"--format", "cobol"}, "c,verilog,vhdl,mem,json");
-  refuses({"--format", "D"}, "c,verilog,vhdl,mem,json");
+  refuses({"--format", "cobol"}, "c, verilog, vhdl, mem, json");
+  refuses({"--format", "D"}, "c, verilog, vhdl, mem, json");
   refuses({"--format", ""}, "--format");
   for (const char* count : {"0", "10000001", "99999999999999999999", "1.5", "many", "", "nan"}) {
     refuses({"--vectors", count}, "--vectors");

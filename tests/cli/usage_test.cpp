@@ -180,12 +180,14 @@ TEST_F(Usage, OptionsOfBuild) {
     refuses({"build", mesh, "-o", tree, "--voxel-size", "0.5", flag, value}, part);
   };
   refuses({"build", mesh, "--voxel-size", "0.5"}, "--output");
-  refuses_with("--classes", "nonsense", "surface,proximity");
+  refuses_with("--classes", "nonsense", "surface, proximity");
   refuses_with("--classes", "surface,nonsense", "nonsense");
   refuses_with("--classes", "proximity", "surface voxels are always made");
-  refuses_with("--spheres", "cubes", "simple,table,tight,slab");
-  refuses_with("--unit", "furlong", "mm,m,inch,um");
-  refuses_with("--unit", "", "mm,m,inch,um");
+  refuses_with("--spheres", "cubes", "simple, table, tight, slab");
+  refuses_with("--unit", "furlong", "mm, m, inch, um");
+  refuses_with("--unit", "", "mm, m, inch, um");
+  refuses_with("--unit", "INHC",
+               "--unit: 'INHC' is none of mm, m, inch, um, µm; did you mean inch?");
   refuses_with("--max-memory", "10", "allow more");
   refuses_with("--max-memory", "-5", "positive");
   refuses_with("--max-memory", "lots", "--max-memory");
@@ -204,7 +206,7 @@ TEST_F(Usage, OptionsOfQueries) {
   refuses_with("--repeat", "-1", "1 to");
   refuses_with("--repeat", "1.5", "--repeat");
   refuses_with("--engine", "nonsense", "reference");
-  refuses_with("--spheres", "nonsense", "simple,table,tight,slab");
+  refuses_with("--spheres", "nonsense", "simple, table, tight, slab");
   refuses({"collide", mesh, "--poses", list, "--voxel-size", "0.5"}, "MOVING");
 }
 
@@ -229,7 +231,7 @@ TEST_F(Usage, OptionsOfApproach) {
 
 TEST_F(Usage, OptionsOfExport) {
   const std::string tree = ball_tree(), out = path("out.ply");
-  refuses({"export", tree, "--what", "else", "--level", "0", "-o", out}, "voxels,spheres");
+  refuses({"export", tree, "--what", "else", "--level", "0", "-o", out}, "voxels, spheres");
   refuses({"export", tree, "--what", "voxels", "--level", "9", "-o", out}, "levels 0 to 3");
   refuses({"export", tree, "--what", "voxels", "--level", "99", "-o", out}, "--level");
   refuses({"export", tree, "--what", "voxels", "--level", "-1", "-o", out}, "--level");

@@ -1,5 +1,6 @@
 """Checks the names in capitals on README and the pages of docs: each is in a public header, or is an option of CMake or a
-variable of the environment that something reads. Checks the names of scripts in HACKING: each is there, and none is left out."""
+variable of the environment that something reads. Checks that lists of mesh formats are complete. Checks the names of
+scripts in HACKING: each is there, and none is left out."""
 
 import pathlib
 import re
@@ -39,6 +40,15 @@ def scripts_wrong(text, scripts, others):
     return [f"there is no {name}" for name in sorted(named - scripts - others)] + [f"{name} is not named" for name in sorted(needed - named)]
 
 
+def formats_left_out():
+    """The places that list the formats of meshes, and the formats that they leave out."""
+    listed = re.search(r'kMeshFormats =\s*"([^"]*)"', (ROOT / "src/ist/mesh/format/mesh_readers.h").read_text())[1]
+    formats = [name.removesuffix(" PolyData") for name in re.split(", | or ", listed)]
+    places = [ROOT / "docs/command.md", ROOT / "src/ist/mesh/mesh.h", ROOT / "src/python/ist/_mesh.py", *(ROOT / "src").rglob("ist_c.h")]
+    return [f"{place.relative_to(ROOT)}: the format {name} is not listed" for place in places for name in formats
+            if not re.search(rf"\b{re.escape(name)}\b", place.read_text())]
+
+
 def main():
     pages, names = [ROOT / "README.md", *(ROOT / "docs").glob("*.md"), *(ROOT / "src").glob("*/README.md")], known()
     wrong = [f"{page.relative_to(ROOT)}:{number}: there is no {name}" for page in pages for number, name in unknown(page.read_text(), names)]
@@ -46,6 +56,7 @@ def main():
     others = {file.name for folder in ("tests", "src", "bench", "examples", "scripts") for file in (ROOT / folder).rglob("*")
               if SCRIPT.fullmatch(file.name)}
     wrong += [f"HACKING.md: {what}" for what in scripts_wrong((ROOT / "HACKING.md").read_text(), scripts, others)]
+    wrong += formats_left_out()
     print("\n".join(wrong), file=sys.stderr)
     print(f"{len(pages)} pages, {len(names)} names, {len(wrong)} that are not there")
     return 1 if wrong else 0

@@ -284,11 +284,11 @@ TEST(ReadMesh, NamesFormatsThatItDoesNotRead) {
            {"DICOM", std::string(128, '\0') + "DICM" + blank},
            {"gzip, a packed file", "\x1F\x8B\x08" + blank}}) {
     for (const char* name : {"a.stl", "a", "a.vtk"}) {
-      EXPECT_EQ(
-          cause(bytes, name),
-          std::string("the file's format is ") + format +
-              ", and the supported formats are STL, PLY, OBJ, OFF, VTK PolyData, glTF or 3MF; "
-              "export the mesh as one of them")
+      EXPECT_EQ(cause(bytes, name), std::string("the file's format is ") + format +
+                                        ", and the supported formats are STL, PLY, OBJ, OFF, VTK "
+                                        "PolyData, glTF, 3MF, COLLADA, "
+                                        "FBX, X3D, AMF, 3DS, AC3D or LightWave; "
+                                        "export the mesh as one of them")
           << name;
     }
   }

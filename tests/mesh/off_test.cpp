@@ -170,7 +170,7 @@ TEST(Off, ErrorsAreOfTheLayoutThatTheTextHas) {
            "mesh-truncated: line 1: the file ends before a face; copy or export it again"},
           {"OFF 0 0 0 ", "mesh-empty: the OFF has no vertex; export the mesh again"},
           {"OFF 1 0 0 1 2 3",
-           "mesh-points-only: the file has 1 vertices, but no face; export the surface as "
+           "mesh-points-only: the file has 1 vertex, but no face; export the surface as "
            "polygons"}}) {
     EXPECT_EQ(off_refusal(text), expected) << text;
   }

@@ -21,6 +21,28 @@ class Misuse(Refusals):
         self.query = ist.Query(self.tree, self.tree)
 
 
+class Names(Misuse):
+    """An error of the library begins with the function of this package that was called."""
+
+    def begins(self, name, call, *arguments, **options):
+        text = str(self.refuses(ist.Error, "", call, *arguments, **options))
+        self.assertTrue(text.startswith(name + ": "), text)
+        self.assertNotIn("ist_", text)
+
+    def test_functions_methods_and_classes(self):
+        apart = ist.build((VERTICES, FACES), 0.5, keep_triangles=False)
+        self.begins("ist.build", ist.build, (VERTICES * np.nan, FACES), 0.5)
+        self.begins("ist.load", ist.load, "/none.ist")
+        self.begins("ist.read_mesh", ist.read_mesh, "/none.stl")
+        self.begins("ist.Query", ist.Query, self.tree, self.tree, target="none")
+        self.begins("Query.intersects", self.query.intersects, EYE * 2)
+        self.begins("Query.penetration", self.query.penetration, EYE * 2, 0.1)
+        self.begins("Query.triangle_pairs", ist.Query(apart, apart).triangle_pairs, EYE)
+        self.begins("ist.signed_distance", ist.signed_distance, apart, [[0, 0, 0]])
+        self.begins("ist.Servo", ist.Servo, "/none.toml")
+        self.begins("ist.Sweep", ist.Sweep, "/none.toml", "/tmp")
+
+
 class Meshes(Misuse):
     def builds(self, words, mesh, voxel_size=0.5, **options):
         return self.refuses(ist.InputError, words, ist.build, mesh, voxel_size, **options)
@@ -330,6 +352,7 @@ class Queries(Misuse):
         self.refuses(ist.InputError, "poses", rows, np.empty((3, 4, 3)))
         for want in ([], ["touch"], "distance", ["intersects", "depth"]):
             self.refuses(ist.InputError, "want", rows, EYE[None], want=want)
+        self.refuses(ist.InputError, "did you mean 'distance'?", rows, EYE[None], want=["distances"])
         self.refuses(ist.InputError, "threads", rows, EYE[None], threads=-1)
         self.refuses(ist.InputError, "threads", rows, EYE[None], threads=5000)
         self.refuses(ist.InputError, "stiffness", rows, EYE[None], stiffness=np.inf)

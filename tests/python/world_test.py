@@ -165,7 +165,7 @@ class Worlds(Refusals):
         def refuses(words, call, *arguments, **options):
             self.refuses(ist.InputError, words, call, *arguments, **options)
 
-        refuses(["prepared", "ist_world_prepare"], self.world.intersects)
+        refuses(["World.intersects: ", "call World.prepare"], self.world.intersects)
         with self.assertRaises(TypeError):
             self.world.add(7)
         refuses(["pose", "(4, 4)"], self.world.add, self.trees[0], np.eye(3))
@@ -184,10 +184,12 @@ class Worlds(Refusals):
         refuses(["out"], self.world.intersects, out=np.zeros(3))
         refuses(["out"], self.world.leaf_pairs, into=np.zeros(3, ist.CONTACT))
         refuses(["question", "touches", "intersects"], self.world.ask, "touches")
+        refuses(["question is 'distance': did you mean 'distances'?"], self.world.ask, "distance")
+        refuses(["question is 7: pass one of near_pairs, "], self.world.ask, 7)
         refuses(["into", "distances"], self.world.ask, "distances", into=np.zeros(3, ist.LEAF_PAIR))
         refuses(["tolerance"], self.world.distance, -1)
         refuses(["tolerance"], self.world.distances, np.nan)
-        refuses(["IST_ASK_CONTACTS"], self.world.contacts_of, 0, 3)
+        refuses(["World.contacts_of: ", 'World.ask for "contacts"'], self.world.contacts_of, 0, 3)
         with self.assertRaises(TypeError):
             self.world.__reduce__()
 

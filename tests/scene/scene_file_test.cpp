@@ -77,6 +77,11 @@ TEST_F(SceneFile, SaysWhatIsSimulated) {
   EXPECT_EQ(scene.contact.value().stiffness, 2000);
 }
 
+TEST_F(SceneFile, TakesAWholeFloatForAWholeNumber) {
+  EXPECT_EQ(read(replaced(kSoundScene, "rate = 1000", "workers = 2.0")).workers, 2);
+  EXPECT_EQ(read(replaced(kSoundScene, "rate = 1000", "workers = 2e0")).workers, 2);
+}
+
 TEST_F(SceneFile, LeavesOutWhatIsNotNamed) {
   const Scene scene = read(kSoundScene);
   EXPECT_EQ(make_effects(scene, {}, true, 1).size(), 1u);

@@ -131,10 +131,10 @@ TEST_F(Merge, CanBeMadeAgain) {
   EXPECT_EQ(file_content(parts.path() / "manifest.json"), manifest);
 }
 
-TEST(ContentHash, IsXxh3Of128Bits) {
+TEST(Checksum, TextIsXxh3Of128Bits) {
   // xxhsum -H2 of an empty file, and of "abc".
-  EXPECT_EQ(ContentHash().text(), "99aa06d3014798d86001c324468d497f");
-  ContentHash hash;
+  EXPECT_EQ(Checksum().text(), "99aa06d3014798d86001c324468d497f");
+  Checksum hash;
   hash.add("a", 1);
   hash.add("bc", 2);
   EXPECT_EQ(hash.text(), "06b05ab6733a618578af5f94892f3950");

@@ -72,6 +72,12 @@ TEST_F(SweepFileTest, WrongValuesAreRefusedWithLineAndRemedy) {
       {"tolerance = 0.01", "spheres = \"round\"", 2, "round", "\"slab\""},
       {"tolerance = 0.01", "margin = 3", 2, "3", "from 0 to 2"},
       {"tolerance = 0.01", "tests = 0", 2, "0", "from 1 on"},
+      {"tolerance = 0.01", "tests = inf", 2, "inf", "a whole number, from 1 on"},
+      {"rows_per_part = 4", "rows_per_part = 1.5", 3, "'rows_per_part' in the file is 1.5",
+       "give a whole number, 1 to"},
+      {"count = 10", "count = 9.3e18", 10, "9.3e+18", "to 1000000000000"},
+      {"turns_within = [10, 20, 30]", "turns_wihtin = [1, 2, 3]\nabout = [0, 0, 0]", 13,
+       "'turns_wihtin'", "did you mean 'turns_within'?"},
       {"rows_per_part = 4", "rows_per_part = 0", 3, "0", "1 to"},
       {"[fixed]\ntree = \"fixed.ist\"\n", "", 1, "no 'fixed'", "[fixed]"},
       {"tree = \"fixed.ist\"", "file = \"fixed.ist\"", 4, "no 'tree'", "the name of a tree file"},
@@ -94,6 +100,12 @@ TEST_F(SweepFileTest, WrongValuesAreRefusedWithLineAndRemedy) {
        11, "both", "give one"},
       {"[poses.box]", "[[poses.axes]]\nfrom = 0\nto = 1\ncount = 2\n[poses.boxes]", 8, "neither",
        "give one"},
+      {"[poses.box]",
+       "[[poses.axes]]\nmoev = [0, 0, 1]\nfrom = 0\nto = 1\ncount = 2\n[poses.boxes]", 9,
+       "'moev' in [poses.axes.1] is unknown", "did you mean 'move'?"},
+      {"[poses.box]",
+       "[[poses.axes]]\ntrun = [0, 0, 1]\nfrom = 0\nto = 1\ncount = 2\n[poses.boxes]", 9,
+       "'trun' in [poses.axes.1] is unknown", "did you mean 'turn'?"},
       {"[poses.box]",
        "[[poses.axes]]\nmove = [0, 0, 0]\nfrom = 0\nto = 1\ncount = 2\n[poses.boxes]", 9,
        "no length", "[0, 0, 1]"},
@@ -174,6 +186,8 @@ TEST_F(SweepFileTest, TheSameContentIsTheSameSweep) {
   std::filesystem::copy(dir_.path() / "moving.ist", dir_.path() / "other.ist");
   EXPECT_EQ(sweep_with("moving.ist", "other.ist").identity().hash, hash);
   EXPECT_EQ(sweep_with("tolerance = 0.01\n", "tolerance = 1e-2 # mm\n\n").identity().hash, hash);
+  EXPECT_EQ(sweep_with("count = 10", "count = 1e1").identity().hash, hash);
+  EXPECT_EQ(sweep_with("seed = 7", "seed = 7.0").identity().hash, hash);
 }
 
 }  // namespace

@@ -314,6 +314,9 @@ TEST(DamagedTree, WithoutVoxelsEachFieldIsChecked) {
   };
   expect_corrupt(file.with(TreeFile::kCorner, 1.0), "corner");
   expect_corrupt(file.with(TreeFile::kCorner, kNaN), "corner");
+  expect_corrupt(file.with(TreeFile::kCorner, -0.0), "corner");
+  EXPECT_NE(error_of_bytes(file.with(TreeFile::kVoxelSize, -0.0)), "none");
+  EXPECT_NE(error_of_bytes(file.with(TreeFile::kCells, 1u)), "none");
   expect_corrupt(file.with(TreeFile::kDepth, 1u), "depth");
   expect_corrupt(file.with(TreeFile::kOrientation, 7u), "orientation");
   for (const std::uint32_t sections : {0u, 1u, 3u, 6u, 15u, 18u}) {

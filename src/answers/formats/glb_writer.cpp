@@ -1,7 +1,5 @@
 #include "answers/formats/glb_writer.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,8 +10,7 @@
 
 #include "answers/formats/little_endian.h"
 #include "ist/base/assert.h"
-#include "ist/base/error.h"
-#include "ist/base/files.h"
+#include "ist/base/throw_error.h"
 
 namespace ist::answers {
 namespace {
@@ -95,8 +92,8 @@ class Scene {
     const std::size_t binary_chunk = binary_.empty() ? 0 : kChunkHeaderBytes + binary_.size();
     const std::size_t bytes = kHeaderBytes + kChunkHeaderBytes + text.size() + binary_chunk;
     if (bytes > std::numeric_limits<std::uint32_t>::max()) {
-      throw Error(ErrorCode::kFileUnwritable,
-                  fmt::format("{}: a GLB holds at most 4 GiB; write a .vtp", file_.string()));
+      throw_error(ErrorCode::kFileUnwritable, "{}: a GLB holds at most 4 GiB; write a .vtp",
+                  file_.string());
     }
     const auto write_words = [&output](std::initializer_list<std::size_t> words) {
       for (const std::size_t word : words) {

@@ -40,8 +40,10 @@ std::array<std::uint64_t, 4> face_corners(const Cell& cell, std::size_t axis, st
 }
 
 // Returns the corners of all faces that no neighbour hides, four a face.
-std::vector<std::uint64_t> open_faces(std::span<const std::uint64_t> cells, std::uint32_t end) {
+std::vector<std::uint64_t> open_faces(std::span<const std::uint64_t> cells, std::uint32_t end,
+                                      Progress& progress) {
   std::vector<std::uint64_t> faces;
+  progress.begin_stage("finding the faces that are seen", cells.size());
   for (const std::uint64_t code : cells) {
     const Cell cell = morton_decode(code);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -56,16 +58,20 @@ std::vector<std::uint64_t> open_faces(std::span<const std::uint64_t> cells, std:
         faces.insert(faces.end(), corners.begin(), corners.end());
       }
     }
+    progress.add(1);
   }
   return faces;
 }
 
 }  // namespace
 
-PolyData level_cubes(const SphereTree& tree, int level) {
+PolyData level_cubes(const SphereTree& tree, int level, Progress* progress) {
+  Progress unseen;
+  Progress& shown = progress != nullptr ? *progress : unseen;
   const Lattice& lattice = voxels_of(tree).lattice;
   const std::vector<std::uint64_t> cells = voxels_of(tree).octree.codes(level);
-  const std::vector<std::uint64_t> faces = open_faces(cells, 1u << (tree.depth() - level));
+  const std::vector<std::uint64_t> faces = open_faces(cells, 1u << (tree.depth() - level), shown);
+  shown.begin_stage("sorting corners", 0);
   std::vector<std::uint64_t> corners = faces;
   std::sort(corners.begin(), corners.end());
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
@@ -82,9 +88,11 @@ PolyData level_cubes(const SphereTree& tree, int level) {
     cubes.points.push_back(point);
   }
   cubes.polygons.reserve(faces.size());
+  shown.begin_stage("joining corners", faces.size());
   for (const std::uint64_t code : faces) {
     const auto found = std::lower_bound(corners.begin(), corners.end(), code);
     cubes.polygons.push_back(static_cast<std::uint32_t>(found - corners.begin()));
+    shown.add(1);
   }
   return cubes;
 }

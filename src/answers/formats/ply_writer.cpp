@@ -10,8 +10,7 @@
 
 #include "answers/formats/little_endian.h"
 #include "ist/base/assert.h"
-#include "ist/base/error.h"
-#include "ist/base/files.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/format/frame_tags.h"
 
 namespace ist::answers {
@@ -106,9 +105,9 @@ void write_ply(const PolyData& data, const std::filesystem::path& file,
 void write_ply(const PolyData& data, OutputFile& file, const std::string& comment) {
   IST_ASSERT(is_consistent(data));
   if (data.points.size() > std::numeric_limits<std::int32_t>::max()) {
-    throw Error(ErrorCode::kFileUnwritable,
-                fmt::format("{}: a PLY's faces know at most 2^31 - 1 points; write a .vtp",
-                            file.target().string()));
+    throw_error(ErrorCode::kFileUnwritable,
+                "{}: a PLY's faces know at most 2^31 - 1 points; write a .vtp",
+                file.target().string());
   }
   const std::vector<float> points = float_points(data, file.target());
   VertexElement vertices(data.points.size());

@@ -1,7 +1,5 @@
 #include "answers/formats/poly_data.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
@@ -9,7 +7,7 @@
 #include <type_traits>
 
 #include "ist/base/assert.h"
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 
 namespace ist::answers {
 namespace {
@@ -114,10 +112,10 @@ std::vector<float> float_points(const PolyData& data, const std::filesystem::pat
     for (const double coordinate : data.points[i]) {
       floats.push_back(static_cast<float>(coordinate));
       if (!std::isfinite(floats.back())) {
-        throw Error(ErrorCode::kMeshNotFinite,
-                    fmt::format("{}: point {} is not finite as a float, which the file would hold; "
-                                "scale the mesh",
-                                file.string(), i));
+        throw_error(ErrorCode::kMeshNotFinite,
+                    "{}: point {} is not finite as a float, which the file would hold; "
+                    "scale the mesh",
+                    file.string(), i);
       }
     }
   }

@@ -10,7 +10,6 @@
 
 #include "answers/formats/little_endian.h"
 #include "ist/base/assert.h"
-#include "ist/base/files.h"
 #include "ist/mesh/format/frame_tags.h"
 
 namespace ist::answers {
@@ -102,8 +101,7 @@ void write_vtp(const PolyData& data, OutputFile& file) {
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
       "header_type=\"UInt64\">\n"
-      "  <PolyData>\n{}"
-      "    <Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" "
+      "  <PolyData>\n{}    <Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" "
       "NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n",
       field_data(data), data.points.size(), vertices ? cells : 0, vertices ? 0 : cells));
   document.add(data.normals.empty() ? "      <PointData>\n"

@@ -1,6 +1,5 @@
 #include "answers/occlusion/bite.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

@@ -38,10 +38,12 @@ struct BiteContact {
   std::vector<std::uint32_t> fixed, moving;  ///< its regions, by their indices
   /// The mean of both bodies; of the one body if the contact is on one alone.
   double area = 0, penetrating_area = 0, depth_integral = 0;
-  double share = 0, share_thinner = 0, share_thicker = 0;  ///< likewise, 0 to 1
-  double least_distance = 0;                               ///< signed, of all its regions
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();        ///< of the area of all its regions
-  Eigen::Vector3d closest = Eigen::Vector3d::Zero();       ///< the point of the least distance
+  /// Likewise, 0 to 1. The shares of a body's regions add up to 1. So the shares of all contacts
+  /// add up to 1 if all are on both bodies, and to more with contacts on one body alone.
+  double share = 0, share_thinner = 0, share_thicker = 0;
+  double least_distance = 0;                          ///< signed, of all its regions
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();   ///< of the area of all its regions
+  Eigen::Vector3d closest = Eigen::Vector3d::Zero();  ///< the point of the least distance
 
   [[nodiscard]] bool on_both() const { return !fixed.empty() && !moving.empty(); }
 };

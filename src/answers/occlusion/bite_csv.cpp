@@ -1,5 +1,3 @@
-#include "answers/occlusion/bite_csv.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,8 +6,8 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
+#include "answers/occlusion/bite_files.h"
 #include "answers/occlusion/bite_hints.h"
 #include "answers/refusals.h"
 

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "answers/occlusion/bite_direction.h"
 #include "answers/occlusion/bite_numbers.h"
@@ -178,8 +176,8 @@ std::optional<std::string> warning_of(const Bite& bite) {
       std::min(bite.fixed.box().sizes().maxCoeff(), bite.moving.box().sizes().maxCoeff());
   if (!maps_nothing(bite.fixed) || !maps_nothing(bite.moving) || apart <= 0.5 * smaller) return {};
   return fmt::format(
-      "The scans are {} apart: they are probably not in one coordinate system. Register "
-      "them first, or give --matrix.",
+      "The scans are {} apart: they are probably not in one coordinate system. Register them "
+      "first, or give --matrix.",
       numbers.millimetres(apart));
 }
 
@@ -209,16 +207,20 @@ std::optional<std::string> hint_of(const Bite& bite) {
 std::string region_words(const Bite& bite) {
   return fmt::format(
       "region: areas, contacts, shares, depths of vertices and the deepest point are of the "
-      "triangles "
-      "with their centroid in {}; all else is of the whole bodies",
+      "triangles with their centroid in {}; all else is of the whole bodies",
       box_words(*bite.region));
 }
 
+std::vector<std::string> remarks_of(const Bite& bite) {
+  std::vector<std::string> remarks;
+  if (bite.warning) remarks.push_back(*bite.warning);
+  if (bite.region) remarks.push_back(region_words(bite));
+  if (bite.hint) remarks.push_back("hint: " + *bite.hint);
+  return remarks;
+}
+
 std::vector<std::string> notes_of(const Bite& bite) {
-  std::vector<std::string> notes;
-  if (bite.warning) notes.push_back(*bite.warning);
-  if (bite.region) notes.push_back(region_words(bite));
-  if (bite.hint) notes.push_back("hint: " + *bite.hint);
+  std::vector<std::string> notes = remarks_of(bite);
   notes.insert(notes.end(), bite.checks.begin(), bite.checks.end());
   return notes;
 }

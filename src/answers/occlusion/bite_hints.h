@@ -27,7 +27,10 @@ namespace ist::answers {
 /// Returns a sentence about the region of a bite. Precondition: it has one.
 [[nodiscard]] std::string region_words(const Bite& bite);
 
-/// Returns all sentences about a bite: its warning, its region, its hint and its checks.
+/// Returns the sentences that every file of a bite holds: its warning, its region and its hint.
+[[nodiscard]] std::vector<std::string> remarks_of(const Bite& bite);
+
+/// Returns all sentences about a bite: its remarks and its checks.
 [[nodiscard]] std::vector<std::string> notes_of(const Bite& bite);
 
 /// Returns a box in words: "x -5 to 5, y -5 to 5, z -3 to 0".

@@ -1,10 +1,9 @@
-#include "answers/occlusion/bite_json.h"
-
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "answers/commit.h"
 #include "answers/json_parts.h"
+#include "answers/occlusion/bite_files.h"
 
 namespace ist::answers {
 namespace {

@@ -12,8 +12,8 @@
 #include "answers/occlusion/bite_numbers.h"
 #include "answers/refusals.h"
 #include "answers/version.h"
-#include "ist/base/error.h"
 #include "ist/base/pose.h"
+#include "ist/base/throw_error.h"
 
 namespace ist::answers {
 namespace {
@@ -44,17 +44,17 @@ void require_size(const Bodies& bodies, const Bite& bite) {
         std::tuple(&bodies.moving, &bodies.moving_name, "--unit-moving")}) {
     const double size = largest_extent(box_of(*tree)) / bite.units_per_mm;
     refuse_if(!(size >= kLeast && size <= kLargest), option,
-              fmt::format("{} would be {} large, and jaws are 1 to 1000 mm: tell its unit", *name,
-                          BiteNumbers::in_millimetres(size)));
+              "{} would be {} large, and jaws are 1 to 1000 mm: tell its unit", *name,
+              BiteNumbers::in_millimetres(size));
   }
 }
 
 void require_area(const BiteBody& body, const std::string& name) {
   if (body.surface.total_area > 0) return;
-  throw Error(ErrorCode::kMeshExtent,
-              fmt::format("{}: the mesh is flat: no triangle has an area, so nothing can touch it: "
-                          "write it again from its scan",
-                          name));
+  throw_error(ErrorCode::kMeshExtent,
+              "{}: the mesh is flat: no triangle has an area, so nothing can touch it: "
+              "write it again from its scan",
+              name);
 }
 
 OcclusionOptions options_of(const Bite& bite) {
@@ -75,9 +75,8 @@ OcclusionOptions options_of(const Bite& bite) {
 
 void require_in_region(const Bite& bite, const BiteBody& body, const std::string& name) {
   if (!bite.region || body.surface.total_area > 0) return;
-  refuse_if(true, "--region",
-            fmt::format("no triangle of {} has its centroid in {}: the body lies in {}", name,
-                        box_words(*bite.region), box_words(body.box())));
+  refuse_if(true, "--region", "no triangle of {} has its centroid in {}: the body lies in {}", name,
+            box_words(*bite.region), box_words(body.box()));
 }
 
 // Returns the area of each limit of the preset, in its order.

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <filesystem>
 #include <optional>
-#include <string>
 
 #include "answers/bodies.h"
 #include "answers/occlusion/bite.h"

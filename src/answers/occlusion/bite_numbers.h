@@ -10,6 +10,12 @@
 
 namespace ist::answers {
 
+/// Says how shares of contacts are read, if some are on one body alone. A sentence without a stop.
+inline constexpr const char* kSharesOnOneBody =
+    "on each body the shares add up to 100 %; a contact on both bodies has the mean of its two "
+    "shares, a contact on one body alone has the share on that body, so all together can exceed "
+    "100 %";
+
 /// How a report and a terminal write the numbers of a bite. Scans err by some 50 µm, so no digit
 /// says less than 1 µm, 0.01 mm², 0.001 mm³ or 0.1 %.
 class BiteNumbers {

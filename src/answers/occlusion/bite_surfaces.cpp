@@ -1,10 +1,14 @@
 #include "answers/occlusion/bite_surfaces.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "answers/occlusion/bite_direction.h"
+#include "answers/occlusion/bite_hints.h"
 #include "answers/occlusion/map_colours.h"
 
 namespace ist::answers {
@@ -63,6 +67,10 @@ std::vector<NamedPolyData> surfaces(const Bite& bite, const BiteSelection& selec
     PolyData data = placed(*body, body == &bite.fixed ? book.fixed : book.moving);
     if (!selection.open) data.frame = bite.frame;
     data.texts = {{"Unit", bite.unit_words()}, {"Caveat", kCaveat}};
+    const std::vector<std::string> remarks = remarks_of(bite);
+    if (!remarks.empty()) {
+      data.texts.push_back({"Remarks", fmt::format("{}", fmt::join(remarks, "; "))});
+    }
     out.push_back({body->name, std::move(data)});
   }
   return out;

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "answers/formats/poly_data.h"

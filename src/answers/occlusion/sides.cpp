@@ -1,7 +1,5 @@
 #include "answers/occlusion/sides.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "answers/refusals.h"
@@ -76,16 +74,16 @@ std::pair<Division, Division> divisions(const SideOptions& options, PatientFrame
             "contradicts --left and --front, which say the same");
   const PatientFrame given = patient_frame(options.frame).value_or(PatientFrame::kUnknown);
   refuse_if(contradict(given, of_files), "--frame",
-            fmt::format("it is {}, and the files are in {}: leave the option out", to_string(given),
-                        to_string(of_files)));
+            "it is {}, and the files are in {}: leave the option out", to_string(given),
+            to_string(of_files));
   const PatientFrame frame = given == PatientFrame::kUnknown ? of_files : given;
   if (frame != PatientFrame::kUnknown) {
     const double sign = frame == PatientFrame::kLps ? 1 : -1;
     const Vector to_left(sign, 0, 0), to_cache(0, -sign, 0);
     refuse_if(left && !(left->dot(to_left) > 0), "--left",
-              fmt::format("it points to the right in the files' frame, {}", to_string(frame)));
+              "it points to the right in the files' frame, {}", to_string(frame));
     refuse_if(front && !(front->dot(to_cache) > 0), "--front",
-              fmt::format("it points to the back in the files' frame, {}", to_string(frame)));
+              "it points to the back in the files' frame, {}", to_string(frame));
     if (!left) left = to_left;
     if (!front) front = to_cache;
   }

@@ -1,39 +1,24 @@
-#include "cli/commands/advise_report.h"
-
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
+#include "cli/commands/reports.h"
 #include "cli/terminal.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist::cli {
-namespace {
-
-// Returns the text as a shell reads it, quoted if necessary.
-std::string quoted(const std::string& text) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
-  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
-
-}  // namespace
 
 void print_json(const VoxelAdvice& advice) {
   for (std::size_t i = 0; i < advice.measured.size(); ++i) {
     const SizeMeasure& size = advice.measured[i];
-    const nlohmann::ordered_json line{{"voxel_size", size.voxel_size},
-                                      {"error", size.error},
-                                      {"resolution", size.resolution},
-                                      {"microseconds_slowest", size.slowest_query},
-                                      {"hertz", 1e6 / size.slowest_query},
-                                      {"build_milliseconds", size.build_milliseconds},
-                                      {"memory", size.bytes},
-                                      {"recommended", advice.recommended == i}};
-    print_json(line);
+    print_json({{"voxel_size", size.voxel_size},
+                {"error", size.error},
+                {"resolution", size.resolution},
+                {"microseconds_slowest", size.slowest_query},
+                {"hertz", 1e6 / size.slowest_query},
+                {"build_milliseconds", size.build_milliseconds},
+                {"memory", size.bytes},
+                {"recommended", advice.recommended == i}});
   }
 }
 
@@ -59,8 +44,8 @@ void print_build_commands(double voxel_size, const std::filesystem::path& fixed,
   for (const auto& [mesh, name] :
        {std::pair(fixed, "fixed.ist"), std::pair(moving, "moving.ist")}) {
     const std::string tree = same ? name : tree_of(mesh);
-    fmt::print("  ist build {} -o {} --voxel-size {:g}{}\n", quoted(mesh.string()), quoted(tree),
-               voxel_size,
+    fmt::print("  {} build {} -o {} --voxel-size {:g}{}\n", command_word(), quoted(mesh.string()),
+               quoted(tree), voxel_size,
                max_memory == BuildOptions{}.max_memory
                    ? std::string()
                    : fmt::format(" --max-memory {}", max_memory));

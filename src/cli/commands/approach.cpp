@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -63,7 +62,7 @@ std::vector<AskedPose> poses_along(const Path& path, const std::optional<double>
   const double length = std::abs(path.to - path.from);
   const double step = asked.value_or(length > 0 ? length / kDefaultSteps : 1);
   refuse_if(!(step > 0) || !(length / step <= kMostSteps), "--step",
-            fmt::format("give a positive number that makes at most {:.0f} steps", kMostSteps));
+            "give a positive number that makes at most {:.0f} steps", kMostSteps);
   const auto steps = static_cast<int>(std::floor(length / step * (1 + 1e-12)));
   std::vector<AskedPose> poses;
   for (int i = 0; i <= steps; ++i) {
@@ -161,7 +160,7 @@ void tell_first_contact(const Bodies& bodies, const Path& path, const ApproachAr
 void run(const ApproachArguments& options) {
   const QuestionOptions& query = options.query;
   query.check();
-  refuse_to_overwrite(query.contacts, {query.files.fixed, query.files.moving, options.pose.matrix});
+  check_output(query.contacts, {query.files.fixed, query.files.moving, options.pose.matrix});
   const Path path = path_of(options);
   const std::vector<AskedPose> poses = poses_along(path, options.step);
   const Bodies bodies = load_bodies(query.body_files());

@@ -7,12 +7,14 @@
 
 #include "advise/closing_path.h"
 #include "answers/engine.h"
+#include "answers/measure_progress.h"
 #include "answers/refusals.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/load_bodies.h"
 #include "cli/poses/pose_file.h"
 #include "cli/poses/pose_options.h"
+#include "cli/progress_bar.h"
 #include "cli/terminal.h"
 #include "ist/models/models.h"
 
@@ -47,8 +49,12 @@ struct BenchWay {
 Bodies built_in_jaws(const BodyFiles& files) {
   const BuildOptions build{.voxel_size = files.voxel_size.value_or(0.2),  // mm
                            .max_memory = files.max_memory};
-  return {build_tree(make_jaw(Jaw::kUpper, 1), build), build_tree(make_jaw(Jaw::kLower, 1), build),
-          build.spheres};
+  std::vector<std::string> warnings;
+  Bodies jaws{build_with_progress("upper jaw", make_jaw(Jaw::kUpper, 1), build, warnings),
+              build_with_progress("lower jaw", make_jaw(Jaw::kLower, 1), build, warnings),
+              build.spheres};
+  print_warnings(warnings);
+  return jaws;
 }
 
 // The ways refer to the trees.
@@ -87,9 +93,18 @@ std::vector<BenchWay> ways_to_ask(const SphereTree& fixed, const SphereTree& mov
 void take_turns(std::vector<BenchWay>& ways, const std::vector<Eigen::Isometry3d>& poses,
                 double seconds) {
   using Clock = std::chrono::steady_clock;
-  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-  for (int turn = 0; turn <= 3 || Clock::now() < end; ++turn) {
-    for (BenchWay& way : ways)
+  constexpr int kLeastTurns = 4;
+  ProgressBar bar;
+  const Proceed show = shown_by(bar, "timing every way to ask");
+  const auto start = Clock::now();
+  const auto passed = [&] {
+    return std::chrono::duration<double>(Clock::now() - start).count() / seconds;
+  };
+  double ways_asked = 0;
+  for (int turn = 0; turn < kLeastTurns || passed() < 1; ++turn) {
+    for (BenchWay& way : ways) {
+      const double turns = ways_asked++ / static_cast<double>(ways.size());
+      show(std::min({1.0, turns / kLeastTurns, passed()}));
       for (const auto& pose : poses) {
         const auto begin = Clock::now();
         const Listed listed = way.ask(pose);
@@ -97,6 +112,7 @@ void take_turns(std::vector<BenchWay>& ways, const std::vector<Eigen::Isometry3d
         if (turn > 0) way.times.push_back(time.count());
         if (turn == 0 && listed) way.listed = way.listed.value_or(0) + *listed;
       }
+    }
   }
   for (BenchWay& way : ways) std::ranges::sort(way.times);
 }
@@ -138,10 +154,10 @@ void add_bench(CLI::App& app) {
   CLI::App* command = app.add_subcommand("bench", "Time every way to ask on this machine");
   const auto options = std::make_shared<BenchArguments>();
   auto& [files, poses, seconds, json] = *options;
-  command->add_option("FIXED", files.fixed, "body that stays; by default a jaw")->type_name("FILE");
-  command->add_option("MOVING", files.moving, "body that is moved")->type_name("FILE");
+  add_file(*command, "FIXED", files.fixed, "body that stays; by default a jaw");
+  add_file(*command, "MOVING", files.moving, "body that is moved");
   command->add_option("--voxel-size", files.voxel_size, "mesh units")->check(CLI::PositiveNumber);
-  command->add_option("--poses", poses, "JSON file; by default 12 of a closing")->type_name("FILE");
+  add_file(*command, "--poses", poses, "JSON file; by default 12 of a closing");
   command->add_option("--seconds", seconds, "time for all turns")->capture_default_str();
   add_units_and_frame(*command, files);
   add_max_memory(*command, files.max_memory);

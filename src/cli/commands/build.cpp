@@ -14,6 +14,7 @@
 #include "cli/common_options.h"
 #include "cli/load_bodies.h"
 #include "cli/terminal.h"
+#include "ist/base/counted.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
@@ -40,9 +41,8 @@ void take_frame(const std::string& name, const std::filesystem::path& file, Tria
   if (name.empty()) return;
   const PatientFrame frame = *patient_frame(name);
   refuse_if(contradict(frame, mesh.frame), "--frame",
-            fmt::format("{} says that its frame is {}: leave the option out, or turn the mesh by "
-                        "--to-frame {}",
-                        file.string(), to_string(mesh.frame), name));
+            "{} says that its frame is {}: leave the option out, or turn the mesh by --to-frame {}",
+            file.string(), to_string(mesh.frame), name);
   mesh.frame = frame;
 }
 
@@ -119,20 +119,19 @@ void run(BuildArguments options) {
   options.build.proximity = names("proximity");
   options.build.voxel_size = options.voxel_size.value_or(0);
   check_voxels(options);
-  refuse_to_overwrite(options.output, {options.mesh});
+  check_output(options.output, {options.mesh});
   options.build.source = source_of(options.mesh);
   options.build.source.unit = length_unit(options.unit).value_or(LengthUnit::kUnknown);
   options.build.keep_triangles = !options.no_triangles;
   options.build.frame = patient_frame(options.to_frame).value_or(PatientFrame::kUnknown);
   CheckedMesh checked = load_mesh(options.mesh);
   take_frame(options.frame, options.mesh, checked.mesh);
-  refuse_if(
-      contradict(options.build.source.unit, checked.mesh.unit), "--unit",
-      fmt::format("{} says that its unit is {}: leave the option out, or, if the file is wrong, "
-                  "convert it to STL, PLY or OBJ, which say no unit",
-                  options.mesh.string(), to_string(checked.mesh.unit)));
+  refuse_if(contradict(options.build.source.unit, checked.mesh.unit), "--unit",
+            "{} says that its unit is {}: leave the option out, or, if the file is wrong, convert "
+            "it to STL, PLY or OBJ, which say no unit",
+            options.mesh.string(), to_string(checked.mesh.unit));
   refuse_if(!options.to_frame.empty() && checked.mesh.frame == PatientFrame::kUnknown, "--to-frame",
-            fmt::format("{} does not say its frame: tell it by --frame", options.mesh.string()));
+            "{} does not say its frame: tell it by --frame", options.mesh.string());
   if (checked.has_border) {
     fmt::print(stderr, "note: {}\n", open_surfaces({options.mesh.string()}));
   }
@@ -157,14 +156,10 @@ void run(BuildArguments options) {
 void add_build(CLI::App& app) {
   CLI::App* command = app.add_subcommand("build", "Make a tree from a mesh, and save it");
   const auto options = std::make_shared<BuildArguments>();
-  command
-      ->add_option("MESH", options->mesh,
-                   fmt::format("{} file; no unit is converted", kMeshFormats))
-      ->type_name("FILE")
+  add_file(*command, "MESH", options->mesh,
+           fmt::format("{} file; no unit is converted", kMeshFormats))
       ->required();
-  command->add_option("-o,--output", options->output, "the tree file to write, .ist")
-      ->type_name("FILE")
-      ->required();
+  add_file(*command, "-o,--output", options->output, "the tree file to write, .ist")->required();
   command->add_option("--voxel-size", options->voxel_size,
                       "edge of a voxel, in mesh units; by default the tree gets no voxels, because "
                       "only leaf pairs and contacts need them");

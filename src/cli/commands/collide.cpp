@@ -23,8 +23,8 @@ struct CollideArguments {
 void run(const CollideArguments& options) {
   const QuestionOptions& query = options.query;
   query.check();
-  refuse_to_overwrite(query.contacts, {query.files.fixed, query.files.moving, options.pose.matrix,
-                                       options.pose.poses});
+  check_output(query.contacts,
+               {query.files.fixed, query.files.moving, options.pose.matrix, options.pose.poses});
   std::vector<AskedPose> poses;
   for (const GivenPose& given : options.pose.poses_named()) {
     poses.push_back({given.pose, std::nullopt, given.rotation_error});

@@ -74,17 +74,16 @@ Rows ask(Engine& engine) {
 
 void print_rows_json(const Engine& engine, SpherePolicy policy, double size, const Rows& rows) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const nlohmann::ordered_json line{{"voxel_size", size},
-                                      {"spheres", to_string(policy)},
-                                      {"engine", engine.name()},
-                                      {"target", engine.target()},
-                                      {"workers", engine.workers()},
-                                      {"displacement", kClosing[i]},
-                                      {"leaf_pairs", rows[i].result.leaf_pairs},
-                                      {"sphere_tests", rows[i].result.sphere_tests},
-                                      {"microseconds_median", rows[i].microseconds},
-                                      {"hertz", 1e6 / rows[i].microseconds}};
-    print_json(line);
+    print_json({{"voxel_size", size},
+                {"spheres", to_string(policy)},
+                {"engine", engine.name()},
+                {"target", engine.target()},
+                {"workers", engine.workers()},
+                {"displacement", kClosing[i]},
+                {"leaf_pairs", rows[i].result.leaf_pairs},
+                {"sphere_tests", rows[i].result.sphere_tests},
+                {"microseconds_median", rows[i].microseconds},
+                {"hertz", 1e6 / rows[i].microseconds}});
   }
 }
 
@@ -145,17 +144,18 @@ void print_bite_of(const TriangleMesh& upper, const TriangleMesh& lower,
   Progress unseen;  // a fifth of a second
   print_bite(make_bite(bodies, {}, pose, questions, unseen), {});
   if (keep.empty()) {
-    fmt::print("\nTry next: ist demo --keep .    (writes the two jaws; then it names more)\n");
+    fmt::print("\nTry next: {} demo --keep .    (writes the two jaws; then it names more)\n",
+               command_word());
     return;
   }
   const std::string files =
-      fmt::format("{} {}", (keep / kUpper).string(), (keep / kLower).string());
+      fmt::format("{} {}", quoted((keep / kUpper).string()), quoted((keep / kLower).string()));
   fmt::print(
       "\nWrote {0}. Try next:\n"
-      "  ist occlusion {0} --move 0,0,{1} -o bite.html\n"
-      "  ist collide {0} --move 0,0,-1.5\n"
-      "  ist approach {0} --axis z --from -3 --to 0\n",
-      files, kDown);
+      "  {2} occlusion {0} --move 0,0,{1} -o bite.html\n"
+      "  {2} collide {0} --move 0,0,-1.5\n"
+      "  {2} approach {0} --axis z --from -3 --to 0\n",
+      files, kDown, command_word());
 }
 
 void run(const DemoArguments& options) {

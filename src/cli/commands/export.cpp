@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "answers/formats/format.h"
 #include "answers/formats/glb_writer.h"
@@ -15,7 +16,9 @@
 #include "answers/refusals.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
+#include "cli/progress_bar.h"
 #include "cli/terminal.h"
+#include "ist/base/counted.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 
@@ -36,6 +39,8 @@ struct ExportArguments {
 constexpr std::array kSurfaceFormats{FileFormat::kVtp, FileFormat::kPly, FileFormat::kGlb};
 constexpr std::array kPointFormats{FileFormat::kVtp, FileFormat::kPly};  // a GLB knows no radius
 
+constexpr const char* kWriting = "writing the file";
+
 FileFormat format_of(const ExportArguments& options) {
   if (options.what == "voxels") return format_by_ending("-o", options.output, kSurfaceFormats);
   return format_by_ending("-o", options.output, kPointFormats);
@@ -46,7 +51,7 @@ double metres_of(const SphereTree& tree, FileFormat format, const ExportArgument
   const LengthUnit stored = tree.source().unit;
   const LengthUnit named = options.unit ? *length_unit(*options.unit) : LengthUnit::kUnknown;
   refuse_if(stored != LengthUnit::kUnknown && named != LengthUnit::kUnknown && stored != named,
-            "--unit", fmt::format("the tree holds {}: leave it out", to_string(stored)));
+            "--unit", "the tree holds {}: leave it out", to_string(stored));
   const LengthUnit unit = stored != LengthUnit::kUnknown ? stored : named;
   if (unit != LengthUnit::kUnknown) return metres_per_unit(unit);
   if (format == FileFormat::kGlb) fmt::print(stderr, "unit: mm (assumed); --unit names another\n");
@@ -64,18 +69,24 @@ void write(PolyData data, const SphereTree& tree, FileFormat format, const std::
   write_glb(body, metres, options.output);
 }
 
-void write_voxels(const SphereTree& tree, FileFormat format, const ExportArguments& options) {
-  write(level_cubes(tree, options.level), tree, format,
+void write_voxels(const SphereTree& tree, FileFormat format, const ExportArguments& options,
+                  Progress& progress) {
+  PolyData cubes = level_cubes(tree, options.level, &progress);
+  progress.begin_stage(kWriting, 0);
+  write(std::move(cubes), tree, format,
         fmt::format("voxels of level {}: cubes, inner faces left out", options.level), options);
 }
 
-void write_spheres(const SphereTree& tree, FileFormat format, const ExportArguments& options) {
+void write_spheres(const SphereTree& tree, FileFormat format, const ExportArguments& options,
+                   Progress& progress) {
   const SpherePolicy policy =
       options.spheres.empty() ? tree.tightest() : *sphere_policy(options.spheres);
   tree.require(policy, options.tree.string());
   const std::string comment =
       fmt::format("{} spheres of level {}: points with a radius", to_string(policy), options.level);
-  write(level_centres(tree, policy, options.level), tree, format, comment, options);
+  PolyData centres = level_centres(tree, policy, options.level);
+  progress.begin_stage(kWriting, 0);
+  write(std::move(centres), tree, format, comment, options);
 }
 
 void run(const ExportArguments& options) {
@@ -84,22 +95,24 @@ void run(const ExportArguments& options) {
   const FileFormat format = format_of(options);
   refuse_if(options.unit && format != FileFormat::kGlb, "--unit",
             "goes with a .glb, which is in metres; .vtp and .ply keep the mesh's unit");
-  refuse_to_overwrite(options.output, {options.tree});
+  check_output(options.output, {options.tree});
   const SphereTree tree = read_tree(options.tree);
   require_voxels(tree, options.tree.string());
-  refuse_if(options.level > tree.depth(), "--level",
-            fmt::format("the tree has levels 0 to {}", tree.depth()));
-  (options.what == "voxels" ? write_voxels : write_spheres)(tree, format, options);
+  refuse_if(options.level > tree.depth(), "--level", "the tree has levels 0 to {}", tree.depth());
+  {
+    ProgressBar progress;
+    (options.what == "voxels" ? write_voxels : write_spheres)(tree, format, options, progress);
+  }
   const std::uint32_t count = voxels_of(tree).octree.node_count(options.level);
   if (options.json) {
     print_header("export", {{"tree", options.tree}});
-    const nlohmann::ordered_json line{{"file", options.output.filename().string()},
-                                      {"what", options.what},
-                                      {"level", options.level},
-                                      {"count", count}};
-    print_json(line);
+    print_json({{"file", options.output.filename().string()},
+                {"what", options.what},
+                {"level", options.level},
+                {"count", count}});
   } else {
-    fmt::print("{}: {} {}\n", options.output.string(), count, options.what);
+    const char* one = options.what == "voxels" ? "voxel" : "sphere";
+    fmt::print("{}: {}\n", options.output.string(), counted(count, one));
   }
 }
 
@@ -107,11 +120,9 @@ void run(const ExportArguments& options) {
 
 void add_export(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "export",
-      "Write a level of a tree for viewers: .vtp for ParaView, .ply for MeshLab and CloudCompare, "
-      ".glb for Blender and browsers");
+      "export", "Write a level of a tree for viewers: " + endings_with_programs(kSurfaceFormats));
   const auto options = std::make_shared<ExportArguments>();
-  command->add_option("TREE", options->tree, "tree file")->type_name("FILE")->required();
+  add_file(*command, "TREE", options->tree, "tree file")->required();
   command
       ->add_option("--what", options->what, "cubes; or spheres, as points with an array 'radius'")
       ->required()
@@ -123,10 +134,10 @@ void add_export(CLI::App& app) {
       ->add_option("--spheres", options->spheres,
                    "spheres to write, of slab the balls; by default the tightest that the tree has")
       ->transform(one_of(policy_names()));
-  command
-      ->add_option("-o,--output", options->output,
-                   "file to write; its ending says the format: .vtp or .ply, of voxels also .glb")
-      ->type_name("FILE")
+  add_file(
+      *command, "-o,--output", options->output,
+      fmt::format("file to write, by its ending: of voxels {}; of spheres {}",
+                  endings_with_programs(kSurfaceFormats), endings_with_programs(kPointFormats)))
       ->required();
   command
       ->add_option("--unit", options->unit,

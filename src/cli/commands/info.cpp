@@ -5,7 +5,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
 
 #include "answers/body_json.h"
 #include "answers/extents.h"
@@ -14,6 +13,7 @@
 #include "cli/common_options.h"
 #include "cli/load_bodies.h"
 #include "cli/terminal.h"
+#include "ist/base/counted.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/mesh_source.h"
@@ -54,9 +54,9 @@ void print_topology(const MeshReport& report, LengthUnit unit) {
   }
   fmt::print("\n");
   if (report.self_intersections == 0) return;
-  fmt::print("{}{} pair{} of triangles intersect{}, first:\n",
-             report.self_intersections_complete ? "" : "at least ", report.self_intersections,
-             report.self_intersections == 1 ? "" : "s", report.self_intersections == 1 ? "s" : "");
+  fmt::print("{}{}, first:\n", report.self_intersections_complete ? "" : "at least ",
+             counted(report.self_intersections, "pair of triangles intersects",
+                     "pairs of triangles intersect"));
   for (const SelfIntersection& one : report.first_self_intersections) {
     fmt::print("  triangles {} and {} near ({:g}, {:g}, {:g})\n", one.triangles[0],
                one.triangles[1], one.near[0], one.near[1], one.near[2]);
@@ -91,9 +91,9 @@ void print_levels(const SphereTree& tree, const std::vector<LevelStatistics>& le
 // Prints for people the counts, size, topology and box of a mesh, and its warnings to stderr.
 void print_mesh(const std::filesystem::path& file, const MeshReport& report,
                 const TriangleMesh& mesh) {
-  fmt::print("{}: a mesh of {} triangles and {} vertices, {} component{}\n", file.string(),
-             report.triangles, report.vertices, report.components,
-             report.components == 1 ? "" : "s");
+  fmt::print("{}: a mesh of {} and {}, {}\n", file.string(), counted(report.triangles, "triangle"),
+             counted(report.vertices, "vertex", "vertices"),
+             counted(report.components, "component"));
   print_extent({report.box_min, report.box_max}, mesh.unit);
   print_frame(mesh.frame);
   print_topology(report, mesh.unit);
@@ -105,22 +105,24 @@ void print_mesh(const std::filesystem::path& file, const MeshReport& report,
 void print_tree(const std::filesystem::path& file, const SphereTree& tree,
                 const std::optional<MeshReport>& triangles,
                 const std::vector<LevelStatistics>& levels) {
-  const std::string of = tree.has_voxels()
-                             ? fmt::format("{} voxels of edge {}, {} nodes", tree.leaf_count(),
-                                           tree.voxel_size(), voxels_of(tree).octree.node_count())
-                             : "triangles without voxels";
+  const std::string of =
+      tree.has_voxels()
+          ? fmt::format("{} of edge {}, {}", counted(tree.leaf_count(), "voxel"), tree.voxel_size(),
+                        counted(voxels_of(tree).octree.node_count(), "node"))
+          : "triangles without voxels";
   fmt::print("{}: a tree of {}, {:.1f} MB in memory\n", file.string(), of,
              static_cast<double>(tree.bytes()) / 1e6);
   print_source(tree.source());
   print_extent(box_of(tree), tree.source().unit);
   print_frame(tree.frame());
   if (triangles) print_topology(*triangles, tree.source().unit);
-  fmt::print("orientation {}, {} triangles kept",
+  fmt::print("orientation {}, {} kept",
              tree.orientation() == Orientation::kOutward ? "outward" : "assumed",
-             triangles ? triangles->triangles : 0);
+             counted(triangles ? triangles->triangles : 0, "triangle"));
   if (!tree.has_voxels()) return fmt::print("\n");
-  fmt::print(", {} proximity voxels\n\n",
-             tree.has_proximity() ? voxels_of(tree).proximity->octree.leaf_count() : 0);
+  fmt::print(", {}\n\n",
+             counted(tree.has_proximity() ? voxels_of(tree).proximity->octree.leaf_count() : 0,
+                     "proximity voxel"));
   print_levels(tree, levels);
 }
 
@@ -155,8 +157,7 @@ void add_info(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("info", "Show the contents of a mesh or a tree, level by level");
   const auto options = std::make_shared<InfoArguments>();
-  command->add_option("FILE", options->file, fmt::format("{} mesh, or tree", kMeshFormats))
-      ->type_name("FILE")
+  add_file(*command, "FILE", options->file, fmt::format("{} mesh, or tree", kMeshFormats))
       ->required();
   command->add_flag("--json", options->json, "print one JSON object");
   add_example(*command, "Example: ist info jaw.ist");

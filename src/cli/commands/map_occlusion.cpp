@@ -17,8 +17,7 @@
 #include "answers/formats/ply_writer.h"
 #include "answers/formats/vtp_writer.h"
 #include "answers/json_parts.h"
-#include "answers/occlusion/bite_csv.h"
-#include "answers/occlusion/bite_json.h"
+#include "answers/occlusion/bite_files.h"
 #include "answers/occlusion/bite_maker.h"
 #include "answers/occlusion/bite_surfaces.h"
 #include "answers/occlusion/labels/tooth_labels.h"
@@ -63,8 +62,8 @@ std::vector<std::string> preset_names() {
 }
 
 void require_length(double length, const std::string& option) {
-  refuse_if(!(length > 0) || !std::isfinite(length), option,
-            fmt::format("{} is no length: give more than 0", length));
+  refuse_if(!(length > 0) || !std::isfinite(length), option, "{} is no length: give more than 0",
+            length);
 }
 
 std::optional<Eigen::AlignedBox3d> region_of(const std::string& text) {
@@ -88,8 +87,8 @@ BiteQuestions questions_of(const OcclusionArguments& options) {
                                    [&](const Preset& each) { return each.name == options.preset; });
   questions.preset = &*preset;
   refuse_if(questions.reach < 1e-3 * preset->micrometres.back(), "--reach",
-            fmt::format("{} mm is less than the preset's largest limit, {:g} µm", questions.reach,
-                        preset->micrometres.back()));
+            "{} mm is less than the preset's largest limit, {:g} µm", questions.reach,
+            preset->micrometres.back());
   questions.region = region_of(options.region);
   const bool labels = !questions.labels_fixed.empty() || !questions.labels_moving.empty();
   refuse_if(labels && options.numbering.empty(), "--numbering",
@@ -121,11 +120,10 @@ std::vector<Output> outputs_of(const OcclusionArguments& options) {
   bool surface = false, open = false, table = false;
   for (const std::filesystem::path& file : options.outputs) {
     const FileFormat format = format_by_ending("-o", file, kWritable);
-    refuse_to_overwrite(file, {options.files.fixed, options.files.moving, options.pose.matrix,
-                               label_source(options.questions.labels_fixed).file,
-                               label_source(options.questions.labels_moving).file});
-    refuse_if(!names.insert(plain(file)).second, "-o",
-              fmt::format("{} is named twice", file.string()));
+    check_output(file, {options.files.fixed, options.files.moving, options.pose.matrix,
+                        label_source(options.questions.labels_fixed).file,
+                        label_source(options.questions.labels_moving).file});
+    refuse_if(!names.insert(plain(file)).second, "-o", "{} is named twice", file.string());
     open = open || format == FileFormat::kPly || format == FileFormat::kGlb;
     surface = surface || format == FileFormat::kVtp;
     table = table || format == FileFormat::kCsv;
@@ -244,10 +242,9 @@ void run(const OcclusionArguments& options) {
 void add_measure_options(CLI::App& command, OcclusionArguments& options) {
   BiteQuestions& questions = options.questions;
   command
-      .add_option(
-          "--preset", options.preset,
-          "limits of the areas and bands: scan 0, 100 µm; owens 50, 350; biteeye 9, 29, 59, "
-          "89, 149; paper 200; stl 100 to 400; shim 10")
+      .add_option("--preset", options.preset,
+                  "limits of the areas and bands: scan 0, 100 µm; owens 50, 350; biteeye 9, 29, "
+                  "59, 89, 149; paper 200; stl 100 to 400; shim 10")
       ->transform(one_of(preset_names()))
       ->capture_default_str();
   command
@@ -266,42 +263,32 @@ void add_measure_options(CLI::App& command, OcclusionArguments& options) {
 }
 
 void add_patient_options(CLI::App& command, OcclusionArguments& options) {
-  const std::string group = "The patient; nothing is guessed, and sides are +x and -x by default";
+  command.option_defaults()->group(
+      "The patient; nothing is guessed, and sides are +x and -x by default");
   BiteQuestions& questions = options.questions;
   command
       .add_option("--frame", questions.sides.frame,
                   "lps: +x is the patient's left, +y behind; ras: +x right, +y in front; by "
                   "default as the files say it")
-      ->transform(one_of({"lps", "ras"}))
-      ->group(group);
+      ->transform(one_of({"lps", "ras"}));
   command.add_option("--left", questions.sides.left, "x,y,z: the direction of the patient's left")
-      ->type_name("X,Y,Z")
-      ->group(group);
+      ->type_name("X,Y,Z");
   command
       .add_option("--front", questions.sides.front, "x,y,z: the direction of the patient's front")
-      ->type_name("X,Y,Z")
-      ->group(group);
+      ->type_name("X,Y,Z");
   command
       .add_option("--midline", questions.sides.midline,
                   "x,y,z: a point between left and right; by default the middle of the fixed "
                   "body's box, assumed")
-      ->type_name("X,Y,Z")
-      ->group(group);
-  command
-      .add_option(
-          "--labels-fixed", questions.labels_fixed,
-          "the fixed body's tooth numbers, 0 for no tooth: the mesh as a .vtk or .vtp "
-          "(FILE:ARRAY), "
-          "as a .ply with a property label, or as an .obj with groups such as tooth_16; or a text "
-          "of a number a line, for each triangle or vertex")
-      ->type_name("FILE")
-      ->group(group);
-  command.add_option("--labels-moving", questions.labels_moving, "the moving body's")
-      ->type_name("FILE")
-      ->group(group);
+      ->type_name("X,Y,Z");
+  add_file(command, "--labels-fixed", questions.labels_fixed,
+           "the fixed body's tooth numbers, 0 for no tooth: the mesh as a .vtk or .vtp "
+           "(FILE:ARRAY), as a .ply with a property label, or as an .obj with groups such "
+           "as tooth_16; or a text of a number a line, for each triangle or vertex");
+  add_file(command, "--labels-moving", questions.labels_moving, "the moving body's");
   command.add_option("--numbering", options.numbering, "the system of the labels")
-      ->transform(one_of({"fdi", "universal"}))
-      ->group(group);
+      ->transform(one_of({"fdi", "universal"}));
+  command.option_defaults()->group("Options");
 }
 
 }  // namespace
@@ -312,19 +299,17 @@ void add_occlusion(CLI::App& app) {
       "Map the distance between two jaws: areas, contact regions, shares, files to see");
   const auto options = std::make_shared<OcclusionArguments>();
   options->files.voxels = BodyFiles::Voxels::kNone;
-  command->add_option("FIXED", options->files.fixed, "mesh or tree of the body that stays")
-      ->type_name("FILE")
+  add_file(*command, "FIXED", options->files.fixed, "mesh or tree of the body that stays")
       ->required();
-  command->add_option("MOVING", options->files.moving, "mesh or tree of the body that is moved")
-      ->type_name("FILE")
+  add_file(*command, "MOVING", options->files.moving, "mesh or tree of the body that is moved")
       ->required();
   command
       ->add_option(
           "-o,--output", options->outputs,
-          "file to write, by its ending: .vtp (ParaView, Slicer), .ply (MeshLab, "
-          "Blender), .glb (browsers), .csv (Excel, R), .json, .html (the interactive page if "
-          "it is installed, else a static report), .report.html (the report always); "
-          "may be given again; without it only text is printed")
+          fmt::format("file to write, by its ending: {}; .html is the interactive page if it is "
+                      "installed, else a static report, .report.html is the report always; may be "
+                      "given again; without it only text is printed",
+                      endings_with_programs(kWritable)))
       ->type_name("FILE");
   add_measure_options(*command, *options);
   command->add_option("--side", options->side, "write this body alone, to .vtp, .ply and .glb")
@@ -339,17 +324,19 @@ void add_occlusion(CLI::App& app) {
                       "open the pair like a book, with this gap, millimetres: .ply and .glb");
   command->add_flag("--no-names", options->questions.no_names,
                     "write fixed and moving for the files' names");
-  command->add_flag("--fail-if-touching", options->fail_if_touching,
-                    "exit code 6 where the bodies touch, or one lies in the other; 1 where that is "
-                    "unknown");
+  command->add_flag(
+      "--fail-if-touching", options->fail_if_touching,
+      "exit code 6 where the bodies touch, or one lies in the other; 1 where that is unknown");
   add_max_memory(*command, options->files.max_memory, "a body's tree of triangles");
   command->add_flag("--json", options->json, "print the measures as JSON");
   add_patient_options(*command, *options);
   add_pose_options(*command, options->pose, Poses::kOne);
-  add_example(*command, std::string("Examples: ist occlusion upper.stl lower.stl -o bite.vtp\n"
-                                    "          ist occlusion upper.stl lower.stl --frame lps -o "
-                                    "bite.html -o bite.csv\n\n") +
-                            kCaveat);
+  add_example(
+      *command,
+      std::string(
+          "Examples: ist occlusion upper.stl lower.stl -o bite.vtp\n"
+          "          ist occlusion upper.stl lower.stl --frame lps -o bite.html -o bite.csv\n\n") +
+          kCaveat);
   command->callback([options] { run(*options); });
 }
 

@@ -11,7 +11,7 @@
 
 #include "answers/refusals.h"
 #include "cli/commands/commands.h"
-#include "cli/commands/run_report.h"
+#include "cli/commands/reports.h"
 #include "cli/common_options.h"
 #include "cli/exit_code.h"
 #include "cli/interruption.h"
@@ -20,7 +20,9 @@
 #include "cli/recordings/tick_lines.h"
 #include "cli/recordings/tick_recorder.h"
 #include "cli/terminal.h"
+#include "ist/base/counted.h"
 #include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 #include "ist/haptics/servo_loop.h"
 #include "ist/scene.h"
 
@@ -83,19 +85,18 @@ void replay_ticks(BuiltScene& built, const Scene& scene, const RunArguments& opt
     ++ticks;
   }
   if (ticks == 0 && !stop) {
-    throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{}: it holds no tick: give a file that --record wrote",
-                            options.replay.string()));
+    throw_error(ErrorCode::kInputInvalid, "{}: it holds no tick: give a file that --record wrote",
+                options.replay.string());
   }
   if (run.recorder) run.recorder->complete();
-  fmt::print(stderr, "replayed {} ticks\n", ticks);
+  fmt::print(stderr, "replayed {}\n", counted(ticks, "tick"));
 }
 
 void run(const RunArguments& options) {
   // NaN passes every range check.
   refuse_if(options.rate && std::isnan(*options.rate), "--rate", "give a number");
   refuse_if(options.seconds && std::isnan(*options.seconds), "--seconds", "give a number");
-  refuse_to_overwrite(options.record, {options.scene, options.replay});
+  check_output(options.record, {options.scene, options.replay});
   Scene scene = read_scene(options.scene);
   for (const auto* bodies : {&scene.fixed, &scene.held}) {
     for (const SceneBody& body : *bodies) {
@@ -135,17 +136,18 @@ void run(const RunArguments& options) {
   flush_stdout();  // while a signal still cannot end the process amid the report
   if (report.lost_records > 0) {
     throw std::runtime_error(
-        fmt::format("{} ticks were not recorded: the disk is slower than the loop: record to "
-                    "another disk, or at a lower --rate",
-                    report.lost_records));
+        fmt::format("{} not recorded: the disk is slower than the loop: record to another disk, or "
+                    "at a lower --rate",
+                    counted(report.lost_records, "tick was", "ticks were")));
   }
   if (report.missed > options.allow_missed) {
     throw Failure(
         kDeadlinesMissed,
         fmt::format(
-            "{} deadlines were missed, and {} are allowed: use larger voxels or a lower --rate, or "
-            "allow more with --allow-missed",
-            report.missed, options.allow_missed));
+            "{} missed, and {} allowed: use larger voxels or a lower --rate, or allow more with "
+            "--allow-missed",
+            counted(report.missed, "deadline was", "deadlines were"),
+            counted(options.allow_missed, "is", "are")));
   }
 }
 
@@ -155,9 +157,7 @@ void add_run(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "run", "Run the servo loop of a scene: the forces on a hand, tick by tick");
   const auto options = std::make_shared<RunArguments>();
-  command->add_option("SCENE", options->scene, "the scene, a TOML file")
-      ->type_name("FILE")
-      ->required();
+  add_file(*command, "SCENE", options->scene, "the scene, a TOML file")->required();
   auto* check =
       command->add_flag("--check", options->check,
                         "read and build the scene, print its errors and warnings, and end");
@@ -173,19 +173,14 @@ void add_run(CLI::App& app) {
   auto* allow_missed =
       command->add_option("--allow-missed", options->allow_missed, "deadlines that may be missed")
           ->check(whole_number("the number of deadlines"));
-  auto* record =
-      command
-          ->add_option("--record", options->record,
-                       "write every tick to this file: JSON lines, or CSV if it ends in .csv")
-          ->type_name("FILE");
+  auto* record = add_file(*command, "--record", options->record,
+                          "write every tick to this file: JSON lines, or CSV if it ends in .csv");
   auto* unpaced = command->add_flag(
       "--unpaced", options->unpaced,
       "one tick after the other, without waiting and without deadlines; the same on every machine");
-  auto* replay = command
-                     ->add_option("--replay", options->replay,
-                                  "replay the ticks of a JSON recording of this scene: the same "
-                                  "numbers except for times")
-                     ->type_name("FILE");
+  auto* replay = add_file(*command, "--replay", options->replay,
+                          "replay the ticks of a JSON recording of this scene: the same "
+                          "numbers except for times");
   auto* cpu =
       command->add_option("--cpu", options->cpu, "the processor for the loop alone, counted from 0")
           ->check(CLI::NonNegativeNumber);

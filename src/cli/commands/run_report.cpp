@@ -1,12 +1,12 @@
-#include "cli/commands/run_report.h"
-
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "cli/commands/reports.h"
 #include "cli/terminal.h"
+#include "ist/base/counted.h"
 
 namespace ist::cli {
 namespace {
@@ -61,12 +61,11 @@ void print_bars(const LatencyHistogram& times) {
 void print_notes(const std::vector<BuildNote>& notes, bool json) {
   for (const BuildNote& note : notes) {
     if (json) {
-      const nlohmann::ordered_json line{{"what", note.what},
-                                        {"built", note.built},
-                                        {"why", note.why},
-                                        {"milliseconds", note.milliseconds},
-                                        {"bytes", note.bytes}};
-      print_json(line);
+      print_json({{"what", note.what},
+                  {"built", note.built},
+                  {"why", note.why},
+                  {"milliseconds", note.milliseconds},
+                  {"bytes", note.bytes}});
     } else if (note.built) {
       fmt::print("built    {:<18} {:>8.1f} ms {:>8.1f} MB  {}\n", note.what, note.milliseconds,
                  1e-6 * static_cast<double>(note.bytes), note.why);
@@ -109,11 +108,12 @@ void print_report(const ServoReport& report, const Scene& scene, const Simulatio
     return;
   }
   for (const std::string& note : report.notes) fmt::print(stderr, "note: {}\n", note);
-  fmt::print("{} ticks of {:.4g} µs: {} deadlines missed, {} answers incomplete, {} faults\n",
-             report.ticks, 1e6 / scene.rate, report.missed, report.held, report.faults);
+  fmt::print("{} of {:.4g} µs: {} missed, {} incomplete, {}\n", counted(report.ticks, "tick"),
+             1e6 / scene.rate, counted(report.missed, "deadline"), counted(report.held, "answer"),
+             counted(report.faults, "fault"));
   if (report.fresh + report.kept + report.clear > 0) {
-    fmt::print("contacts: {} ticks by a search, {} among the pairs kept, {} inside a clearance\n",
-               report.fresh, report.kept, report.clear);
+    fmt::print("contacts: {} by a search, {} among the pairs kept, {} inside a clearance\n",
+               counted(report.fresh, "tick"), report.kept, report.clear);
   }
   for (const HandChange& change : simulation.changes()) {
     fmt::print("{:.4g} s: {} {}: {}\n", change.time, change.attach ? "attach" : "release",

@@ -16,6 +16,8 @@
 #include "cli/progress_bar.h"
 #include "cli/sweeps/part_words.h"
 #include "ist/base/cancellation.h"
+#include "ist/base/counted.h"
+#include "ist/base/throw_error.h"
 #include "sweep/merge_parts.h"
 #include "sweep/sweep.h"
 
@@ -41,15 +43,13 @@ Share share_of(const std::string& text) {
   const auto number = [&](const std::string& digits) -> std::uint64_t {
     const bool plain = !digits.empty() && digits.size() <= 9 &&
                        digits.find_first_not_of("0123456789") == std::string::npos;
-    refuse_if(!plain, "--share",
-              fmt::format("{} is no share: give k/N, two whole numbers, k from 0 to N - 1", text));
+    refuse_if(!plain, "--share", "{} is no share: give k/N, two whole numbers, k from 0 to N - 1",
+              text);
     return std::stoull(digits);
   };
-  refuse_if(slash == std::string::npos, "--share",
-            fmt::format("{} is no share: give k/N, such as 0/4", text));
+  refuse_if(slash == std::string::npos, "--share", "{} is no share: give k/N, such as 0/4", text);
   const Share share{number(text.substr(0, slash)), number(text.substr(slash + 1))};
-  refuse_if(share.first >= share.step, "--share",
-            fmt::format("{} is no share: k is from 0 to N - 1", text));
+  refuse_if(share.first >= share.step, "--share", "{} is no share: k is from 0 to N - 1", text);
   return share;
 }
 
@@ -85,8 +85,8 @@ Made run_share(const Sweep& sweep, const SweepArguments& options, const Share& s
     switch (outcome) {
       case Sweep::Outcome::kStopped:
         throw Failure(kInterrupted,
-                      fmt::format("interrupted: {} parts were made, and part {} left no file",
-                                  result.made.size(), part));
+                      fmt::format("interrupted: {} made, and part {} left no file",
+                                  counted(result.made.size(), "part was", "parts were"), part));
       case Sweep::Outcome::kWasThere:
         estimate.skip();
         result.there.push_back(part);
@@ -98,8 +98,9 @@ Made run_share(const Sweep& sweep, const SweepArguments& options, const Share& s
       case Sweep::Outcome::kMade:
         estimate.add(spent.count());
         result.made.push_back(part);
-        fmt::print(stderr, "part {}: {} rows in {}; {}\n", part, folder.identity().rows_of(part),
-                   duration_text(spent.count()), estimate.text());
+        fmt::print(stderr, "part {}: {} in {}; {}\n", part,
+                   counted(folder.identity().rows_of(part), "row"), duration_text(spent.count()),
+                   estimate.text());
     }
   }
   return result;
@@ -108,9 +109,7 @@ Made run_share(const Sweep& sweep, const SweepArguments& options, const Share& s
 void run(const SweepArguments& options, const Sweep& sweep) {
   const Made made = run_share(sweep, options, share_of(options.share));
   if (options.json) {
-    const nlohmann::ordered_json json{
-        {"made", made.made}, {"there", made.there}, {"given_up", made.given_up}};
-    print_json(sweep, json);
+    print_json(sweep, {{"made", made.made}, {"there", made.there}, {"given_up", made.given_up}});
   } else {
     fmt::print("parts   made {}, there before {}, given up {}\n", made.made.size(),
                made.there.size(), made.given_up.size());
@@ -127,9 +126,8 @@ void merge(const SweepArguments& options, const Sweep& sweep) {
     return merge_parts(folder, sweep.layout(), shown_by(bar, "merging parts"));
   }();
   if (options.json) {
-    const nlohmann::ordered_json json{
-        {"rows", merged.rows}, {"missing", merged.missing}, {"given_up", merged.given_up}};
-    print_json(sweep, json);
+    print_json(sweep,
+               {{"rows", merged.rows}, {"missing", merged.missing}, {"given_up", merged.given_up}});
   } else if (merged.whole()) {
     fmt::print("rows    {} in {}\n", merged.rows, (options.folder / "rows.npy").string());
   }
@@ -150,9 +148,9 @@ void show_status(const SweepArguments& options, const Sweep& sweep) {
   }();
   print_status(sweep, status, options.json);
   if (status.damaged.empty()) return;
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{}: parts are damaged: remove their files to make them anew: {}",
-                          options.folder.string(), ranges(status.damaged)));
+  throw_error(ErrorCode::kInputInvalid,
+              "{}: parts are damaged: remove their files to make them anew: {}",
+              options.folder.string(), ranges(status.damaged));
 }
 
 }  // namespace
@@ -161,8 +159,7 @@ void add_sweep(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "sweep", "Ask the same at millions of poses, in parts that any process may make");
   const auto options = std::make_shared<SweepArguments>();
-  command->add_option("SWEEP", options->file, "sweep file (.toml): trees, poses and questions")
-      ->type_name("FILE")
+  add_file(*command, "SWEEP", options->file, "sweep file (.toml): trees, poses and questions")
       ->required();
   command
       ->add_option("-o,--output", options->folder, "folder of the parts, made where it is missing")

@@ -6,7 +6,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -161,13 +160,10 @@ void add_table(CLI::App& app) {
       ->check(CLI::Range(std::uint64_t{1}, kMaxVectors));
   command->add_option("--seed", options->seed, "seed of the random vectors; by default 1")
       ->transform(whole_number("a seed"));
-  command
-      ->add_option("--check", options->check,
-                   "check a file of vectors against the model; exit code 5 if they differ, 2 if "
-                   "a number does not fit its format")
-      ->type_name("FILE");
-  command->add_option("-o,--output", options->output, "the file to write; by default stdout")
-      ->type_name("FILE");
+  add_file(*command, "--check", options->check,
+           "check a file of vectors against the model; exit code 5 if they differ, 2 if "
+           "a number does not fit its format");
+  add_file(*command, "-o,--output", options->output, "the file to write; by default stdout");
   command->add_flag("--json", options->json, "print one JSON object about the result");
   add_example(*command,
               "Example: ist table --format verilog -o ist_table_rom.v\n"

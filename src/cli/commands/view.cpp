@@ -14,7 +14,6 @@
 #include "cli/load_bodies.h"
 #include "cli/page/page_blocks.h"
 #include "cli/page/page_file.h"
-#include "cli/page/recording_block.h"
 #include "cli/poses/pose_options.h"
 #include "ist/base/files.h"
 
@@ -79,8 +78,7 @@ nlohmann::ordered_json block_of(const ViewArguments& options) {
 
 void run(const ViewArguments& options) {
   static_cast<void>(format_by_ending("-o", options.output, std::array{FileFormat::kHtml}));
-  refuse_to_overwrite(options.output,
-                      {options.fixed, options.moving, options.scene, options.pose.matrix});
+  check_output(options.output, {options.fixed, options.moving, options.scene, options.pose.matrix});
   const std::optional<std::filesystem::path> page = find_page();
   if (!page) throw std::runtime_error(kHowToGetPage);
   refuse_to_overwrite(options.output, {*page});
@@ -96,21 +94,14 @@ void add_view(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "view", "Write a page that shows bodies, or plays a recording, in any browser");
   const auto options = std::make_shared<ViewArguments>();
-  command
-      ->add_option("FIXED", options->fixed,
-                   "mesh or tree of the body that stays, or a recording of 'ist run --record'")
-      ->type_name("FILE")
+  add_file(*command, "FIXED", options->fixed,
+           "mesh or tree of the body that stays, or a recording of 'ist run --record'")
       ->required();
-  command->add_option("MOVING", options->moving, "mesh or tree of the body that is moved")
-      ->type_name("FILE");
-  command->add_option("-o,--output", options->output, "the page, which ends in .html")
-      ->type_name("FILE")
-      ->required();
-  command
-      ->add_option("--scene", options->scene,
-                   "the scene that a recording is of, for its bodies; else the page shows frames "
-                   "and forces alone")
-      ->type_name("FILE");
+  add_file(*command, "MOVING", options->moving, "mesh or tree of the body that is moved");
+  add_file(*command, "-o,--output", options->output, "the page, which ends in .html")->required();
+  add_file(*command, "--scene", options->scene,
+           "the scene that a recording is of, for its bodies; else the page shows frames "
+           "and forces alone");
   command->add_flag("--no-names", options->no_names, "write fixed and moving for the files' names");
   add_max_memory(*command, options->max_memory, "each tree, and for all queries together");
   add_units_and_frame(*command, options->told);

@@ -4,10 +4,8 @@
 
 #include "answers/occlusion/bite_hints.h"
 #include "answers/occlusion/bite_numbers.h"
-#include "cli/occlusion/html/bite_figures.h"
-#include "cli/occlusion/html/html_tables.h"
+#include "cli/occlusion/html/html_parts.h"
 #include "cli/occlusion/html/html_text.h"
-#include "ist/base/files.h"
 
 namespace ist::cli {
 

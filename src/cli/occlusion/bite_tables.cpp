@@ -8,6 +8,7 @@
 #include "answers/occlusion/bite_hints.h"
 #include "answers/occlusion/bite_numbers.h"
 #include "cli/terminal.h"
+#include "ist/base/counted.h"
 
 namespace ist::cli {
 
@@ -56,8 +57,8 @@ std::string second_line(const Bite& bite) {
   const std::size_t count = bite.contacts.size();
   const std::string contacts =
       count == 0 ? ""  // print_contacts() says so
-                 : fmt::format("; {} contact{}, {} of them on one body alone", count,
-                               count == 1 ? "" : "s", count - bite.fixed.on_both);
+                 : fmt::format("; {}, {} of them on one body alone", counted(count, "contact"),
+                               count - bite.fixed.on_both);
   return fmt::format("areas, {} ({}): {}{}", bite.preset->name, bite.preset->source, areas,
                      contacts);
 }
@@ -93,6 +94,9 @@ void print_contacts(const Bite& bite) {
   if (bite.contacts.size() > kMost) {
     fmt::print("… and {} more: -o bite.csv holds them all\n", bite.contacts.size() - kMost);
   }
+  const bool all_on_both = std::all_of(bite.contacts.begin(), bite.contacts.end(),
+                                       [](const BiteContact& each) { return each.on_both(); });
+  if (!all_on_both) fmt::print("share: {}\n", kSharesOnOneBody);
 }
 
 }  // namespace ist::cli

@@ -4,12 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <stdexcept>
-#include <vector>
 
 #include "answers/formats/poly_data.h"
 #include "ist/base/assert.h"

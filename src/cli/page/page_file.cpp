@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "answers/json_parts.h"
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 
 namespace ist::cli {
 
@@ -54,19 +54,19 @@ void write_page(const std::filesystem::path& page, const nlohmann::ordered_json&
   const std::string place = fmt::format("{}{}{}", kBegin, kEmpty, kEnd);
   const std::size_t at = html.find(place);
   if (at == std::string::npos || html.find(kBegin, at + 1) != std::string::npos) {
-    throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{}: it is no page of ist without data: make one by scripts/viewer.sh, "
-                            "and name it in IST_PAGE",
-                            page.string()));
+    throw_error(ErrorCode::kInputInvalid,
+                "{}: it is no page of ist without data: make one by scripts/viewer.sh, "
+                "and name it in IST_PAGE",
+                page.string());
   }
   const std::size_t begin = at + kBegin.size();
   // A file's name may hold bytes that are no UTF-8.
   const std::string json = json_text(block);
   if (json.size() > most) {
-    throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{}: it would hold {} MB of data, and a browser reads {} MB: take "
-                            "coarser meshes, or a shorter recording",
-                            file.target().string(), json.size() / kMega, most / kMega));
+    throw_error(ErrorCode::kInputInvalid,
+                "{}: it would hold {} MB of data, and a browser reads {} MB: take "
+                "coarser meshes, or a shorter recording",
+                file.target().string(), json.size() / kMega, most / kMega);
   }
   file.write(html.data(), begin);
   write_text(json, file);

@@ -1,7 +1,3 @@
-#include "cli/page/recording_block.h"
-
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -12,8 +8,8 @@
 #include "cli/page/page_blocks.h"
 #include "cli/progress_bar.h"
 #include "cli/recordings/recording_header.h"
-#include "ist/base/error.h"
 #include "ist/base/files.h"
+#include "ist/base/throw_error.h"
 #include "ist/scene.h"
 
 namespace ist::cli {
@@ -43,10 +39,10 @@ nlohmann::json header_of(const std::string& text, const std::filesystem::path& f
   const std::string line = text.substr(0, text.find('\n'));
   nlohmann::json header = nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false);
   if (header.is_object() && header.contains("recording")) return header;
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{}:1: no header of a recording: give a file that --record wrote as JSON "
-                          "lines",
-                          file.string()));
+  throw_error(ErrorCode::kInputInvalid,
+              "{}:1: no header of a recording: give a file that --record wrote as JSON "
+              "lines",
+              file.string());
 }
 
 void add_bodies(const Scene& scene, const BuiltScene& built, ordered_json& block) {
@@ -82,11 +78,10 @@ ordered_json recording_block(const std::filesystem::path& recording,
                              const std::filesystem::path& scene_file, std::uint64_t max_memory) {
   InputFile input(recording);
   if (input.size() > kLongest) {
-    throw Error(
-        ErrorCode::kInputInvalid,
-        fmt::format(
-            "{}: it has {} MB, and a page holds recordings to {} MB: record fewer --seconds",
-            recording.string(), input.size() / 1'000'000, kLongest / 1'000'000));
+    throw_error(ErrorCode::kInputInvalid,
+
+                "{}: it has {} MB, and a page holds recordings to {} MB: record fewer --seconds",
+                recording.string(), input.size() / 1'000'000, kLongest / 1'000'000);
   }
   std::string text = input.read_rest();
   const nlohmann::json header = header_of(text, recording);

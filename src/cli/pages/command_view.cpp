@@ -1,7 +1,7 @@
-#include "cli/pages/command_view.h"
-
 #include <CLI/CLI.hpp>
 #include <sstream>
+
+#include "cli/pages/bash_completion.h"
 
 namespace ist::cli {
 namespace {

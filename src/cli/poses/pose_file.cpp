@@ -9,13 +9,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "answers/refusals.h"
 #include "ist/base/angles.h"
-#include "ist/base/error.h"
 #include "ist/base/files.h"
 #include "ist/base/pose.h"
+#include "ist/base/throw_error.h"
 
 namespace ist::cli {
 
@@ -30,7 +29,7 @@ constexpr const char* kReadTypes =
 
 [[noreturn]] void refuse(ErrorCode code, const std::filesystem::path& file,
                          const std::string& what) {
-  throw Error(code, fmt::format("{}: {}", file.string(), what));
+  throw_error(code, "{}: {}", file.string(), what);
 }
 
 // The text after `key` on its line, or nothing if no line begins with it. Two such lines are a list
@@ -138,12 +137,11 @@ GivenPose read_itk(const std::filesystem::path& file, const std::string& content
   const auto made = transform_of(kind, *numbers, *centre);
   if (!made || !name.ends_with("_3_3") ||
       (centre->size() > 4 || (!centre->empty() && centre->size() < 3))) {
-    refuse(
-        ErrorCode::kInputInvalid, file,
-        fmt::format("{} of {} parameters and {} fixed ones is no rigid transform that can be read: "
-                    "{}",
-                    name.empty() ? "a transform without a name" : name, numbers->size(),
-                    centre->size(), kReadTypes));
+    refuse(ErrorCode::kInputInvalid, file,
+           fmt::format(
+               "{} of {} parameters and {} fixed ones is no rigid transform that can be read: {}",
+               name.empty() ? "a transform without a name" : name, numbers->size(), centre->size(),
+               kReadTypes));
   }
   Eigen::Vector3d c(0, 0, 0);
   if (centre->size() >= 3) c = Eigen::Vector3d((*centre)[0], (*centre)[1], (*centre)[2]);

@@ -10,7 +10,9 @@
 
 #include "advise/closing_path.h"
 #include "answers/refusals.h"
+#include "cli/common_options.h"
 #include "cli/poses/pose_file.h"
+#include "cli/progress_bar.h"
 #include "ist/base/angles.h"
 #include "ist/base/direction.h"
 #include "ist/base/pose.h"
@@ -76,7 +78,7 @@ Eigen::Vector3d axis_named(const std::string& word, const std::string& option) {
   const std::string letter =
       CLI::detail::to_lower(word.substr(minus || word.starts_with('+') ? 1 : 0));
   refuse_if(letter != "x" && letter != "y" && letter != "z", option,
-            fmt::format("{} is no axis: give x, y, z, -x, -y or -z", word));
+            "{} is no axis: give x, y, z, -x, -y or -z", word);
   Eigen::Vector3d axis(0, 0, 0);
   axis[letter[0] - 'x'] = minus ? -1 : 1;
   return axis;
@@ -107,36 +109,29 @@ std::vector<GivenPose> PoseOptions::poses_named() const {
 }
 
 void add_pose_options(CLI::App& command, PoseOptions& options, Poses poses) {
-  const std::string group = "Pose of the moving body; as stored, where none is named";
+  command.option_defaults()->group("Pose of the moving body; as stored, where none is named");
   CLI::Option* move =
       command.add_option("--move", options.move, "shift it by x,y,z mesh units, after the turn")
           ->type_name("X,Y,Z");
-  CLI::Option* turn = command
-                          .add_option("--turn", options.turn,
-                                      "turn it by axis,degrees[@x,y,z] about a point, by default "
-                                      "the origin; an axis is x, y, z, "
-                                      "-x, -y, -z, or three numbers")
-                          ->type_name("AXIS,DEGREES");
-  CLI::Option* matrix =
+  CLI::Option* turn =
       command
-          .add_option("--matrix", options.matrix,
-                      "a file of 4 x 4 numbers, row by row: p_fixed = M p_moving; or a rigid "
-                      "transform of ITK "
-                      "(.tfm), which is inverted, since it maps fixed to moving points")
-          ->type_name("FILE");
-  move->group(group);
-  turn->group(group);
-  matrix->group(group)->excludes(move)->excludes(turn);
-  if (poses == Poses::kOne) return;
-  command
-      .add_option("--poses", options.poses,
-                  "many poses: JSON, an array of objects with \"pose\", 16 numbers, column by "
-                  "column")
-      ->type_name("FILE")
-      ->group(group)
-      ->excludes(move)
-      ->excludes(turn)
-      ->excludes(matrix);
+          .add_option("--turn", options.turn,
+                      "turn it by axis,degrees[@x,y,z] about a point, by default the origin; an "
+                      "axis is x, y, z, -x, -y, -z, or three numbers")
+          ->type_name("AXIS,DEGREES");
+  CLI::Option* matrix =
+      add_file(command, "--matrix", options.matrix,
+               "a file of 4 x 4 numbers, row by row: p_fixed = M p_moving; or a rigid transform of "
+               "ITK (.tfm), which is inverted, since it maps fixed to moving points");
+  matrix->excludes(move)->excludes(turn);
+  if (poses == Poses::kMany) {
+    add_file(command, "--poses", options.poses,
+             "many poses: JSON, an array of objects with \"pose\", 16 numbers, column by column")
+        ->excludes(move)
+        ->excludes(turn)
+        ->excludes(matrix);
+  }
+  command.option_defaults()->group("Options");
 }
 
 ClosingPath find_closing_way(const SphereTree& fixed, const SphereTree& moving,
@@ -153,12 +148,12 @@ ClosingPath find_closing_way(const SphereTree& fixed, const SphereTree& moving,
   Query exact(fixed, moving);
   const std::optional<ClosingPath> path = find_closing_path(exact, direction);
   refuse_if(!path, "--poses",
-            fmt::format("needed, because the bodies do not touch where they are stored, nor when "
-                        "the moving one goes from there along {}: give poses at which they do",
-                        name(-direction.sign)));
-  fmt::print(stderr,
-             "{} poses: opening towards {}, from {:.4g} to {:.4g}; first contact at {:.6g}\n",
-             kClosingPoses, name(direction.sign), path->begin, path->end, path->first_contact);
+            "needed, because the bodies do not touch where they are stored, nor when "
+            "the moving one goes from there along {}: give poses at which they do",
+            name(-direction.sign));
+  print_past_progress_bar(fmt::format(
+      "{} poses: opening towards {}, from {:.4g} to {:.4g}; first contact at {:.6g}\n",
+      kClosingPoses, name(direction.sign), path->begin, path->end, path->first_contact));
   return *path;
 }
 

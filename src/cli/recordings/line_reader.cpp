@@ -1,7 +1,6 @@
 #include "cli/recordings/line_reader.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -11,7 +10,7 @@
 #include <cstring>
 #include <utility>
 
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 
 namespace ist::cli {
 namespace {
@@ -69,9 +68,9 @@ bool LineReader::read_more(const std::atomic<bool>& stop) {
 }
 
 void LineReader::fail() const {
-  throw Error(ErrorCode::kFileUnreadable,
-              fmt::format("{}: cannot read the file: {}: check the name and its permissions",
-                          path_.string(), std::strerror(errno)));
+  throw_error(ErrorCode::kFileUnreadable,
+              "{}: cannot read the file: {}: check the name and its permissions", path_.string(),
+              std::strerror(errno));
 }
 
 }  // namespace ist::cli

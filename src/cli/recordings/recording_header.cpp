@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "answers/commit.h"
 #include "answers/json_parts.h"
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 
 namespace ist::cli {
 
@@ -43,7 +42,7 @@ nlohmann::ordered_json json_of_body(const SceneBody& body, const Simulation& sim
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what) {
-  throw Error(ErrorCode::kInputInvalid, fmt::format("{}:1: {}", file.string(), what));
+  throw_error(ErrorCode::kInputInvalid, "{}:1: {}", file.string(), what);
 }
 
 // The first line, from 1, in which two texts differ.

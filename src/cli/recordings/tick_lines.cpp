@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "answers/json_parts.h"
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 
 namespace ist::cli {
 
@@ -116,9 +116,8 @@ TickReader::TickReader(std::filesystem::path file, RecordingHeader header)
     : lines_(std::move(file)), header_(std::move(header)) {}
 
 void TickReader::refuse(const std::string& what) const {
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{}:{}: {}: give a file that --record wrote as JSON lines",
-                          lines_.path().string(), line_, what));
+  throw_error(ErrorCode::kInputInvalid, "{}:{}: {}: give a file that --record wrote as JSON lines",
+              lines_.path().string(), line_, what);
 }
 
 std::optional<std::string> TickReader::next_line(const std::atomic<bool>& stop) {
@@ -170,11 +169,11 @@ std::optional<RecordedTick> TickReader::next(const std::atomic<bool>& stop) {
   if (dt == line.end() || !dt->is_number()) refuse("no number 'dt'");
   const double own = header_.dt();
   if (dt->get<double>() != own) {
-    throw Error(
+    throw_error(
         ErrorCode::kInputInvalid,
-        fmt::format(
-            "{}:{}: it was recorded at {:.6g} Hz, and the scene runs at {:.6g}: give --rate {:.6g}",
-            lines_.path().string(), line_, 1 / dt->get<double>(), 1 / own, 1 / dt->get<double>()));
+
+        "{}:{}: it was recorded at {:.6g} Hz, and the scene runs at {:.6g}: give --rate {:.6g}",
+        lines_.path().string(), line_, 1 / dt->get<double>(), 1 / own, 1 / dt->get<double>());
   }
   const auto device = line.find("device");
   if (device == line.end()) refuse("no key 'device'");

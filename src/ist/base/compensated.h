@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cmath>
-
 namespace ist {
 
 /// Accumulates a sum or dot product in twice the precision of double and rounds it once at the end:

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "ist/base/cancellation.h"
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 
 namespace ist {
 namespace {
@@ -36,6 +36,29 @@ struct Temporaries {
     return temporaries;
   }
 };
+
+[[noreturn]] void fail_output(const std::filesystem::path& file, const char* doing, int cause) {
+  throw UnwritableFile(
+      fmt::format("{}: cannot {} the file: {}: check the folder, its permissions and the "
+                  "space on the disk",
+                  file.string(), doing, std::strerror(cause)),
+      cause);
+}
+
+// Whether the file is there and no regular one, such as /dev/stdout. Such files are written
+// directly.
+bool is_special(const std::filesystem::path& file) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file, ignored);
+  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+}
+
+// The file that a link leads to. Writing to a link must not replace the link.
+std::filesystem::path without_link(const std::filesystem::path& file) {
+  std::error_code unknown;
+  auto real = std::filesystem::canonical(file, unknown);
+  return unknown ? file : real;
+}
 
 }  // namespace
 
@@ -108,21 +131,26 @@ std::string InputFile::read_rest() {
 }
 
 void InputFile::fail(const char* cause) const {
-  throw Error(ErrorCode::kFileUnreadable,
-              fmt::format("{}: cannot read the file: {}: check the name and its permissions",
-                          path_.string(), cause));
+  throw_error(ErrorCode::kFileUnreadable,
+              "{}: cannot read the file: {}: check the name and its permissions", path_.string(),
+              cause);
+}
+
+void require_writable(const std::filesystem::path& file) {
+  std::error_code unknown;
+  if (std::filesystem::is_directory(file, unknown)) fail_output(file, "create", EISDIR);
+  const bool special = is_special(file);
+  // The dot refuses a file in the folder's place.
+  const std::filesystem::path written = special ? file : without_link(file).parent_path() / ".";
+  const int way = special ? W_OK : W_OK | X_OK;
+  if (::access(written.c_str(), way) != 0) fail_output(file, "create", errno);
 }
 
 OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)) {
-  std::error_code ignored;
-  const auto status = std::filesystem::status(target_, ignored);
-  const bool direct = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
-  if (direct) {
+  if (is_special(target_)) {
     descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
   } else {
-    // Writing to a link must not replace the link.
-    const auto real = std::filesystem::canonical(target_, ignored);
-    if (!ignored) target_ = real;
+    target_ = without_link(target_);
     auto& [mutex, targets] = Temporaries::all();
     const std::lock_guard lock(mutex);
     for (int attempt = 0; attempt < 100 && descriptor_ < 0; ++attempt) {
@@ -141,7 +169,7 @@ OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)
   if (descriptor_ < 0) {
     const int cause = errno;
     temporary_.clear();
-    fail("create", cause);
+    fail_output(target_, "create", cause);
   }
 }
 
@@ -160,7 +188,7 @@ void OutputFile::write(const void* data, std::size_t bytes) {
     cancellation_point();
     const ssize_t written = ::write(descriptor_, next, std::min(bytes, kAtOnce));
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail("write", errno);
+    if (written < 0) fail_output(target_, "write", errno);
     next += written;
     bytes -= static_cast<std::size_t>(written);
   }
@@ -172,7 +200,7 @@ void OutputFile::write_at(std::size_t offset, const void* data, std::size_t byte
   while (bytes > 0) {
     const ssize_t written = ::pwrite(descriptor_, next, bytes, at);
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail("write", errno);
+    if (written < 0) fail_output(target_, "write", errno);
     next += written;
     at += written;
     bytes -= static_cast<std::size_t>(written);
@@ -192,7 +220,7 @@ void OutputFile::commit_all(std::span<OutputFile* const> files) {
     if (failed == nullptr) continue;
     const int cause = errno;
     await_names(files, false);
-    file->fail(failed, cause);
+    fail_output(file->target_, failed, cause);
   }
   auto& [mutex, targets] = Temporaries::all();
   const std::lock_guard lock(mutex);
@@ -207,7 +235,7 @@ void OutputFile::commit_all(std::span<OutputFile* const> files) {
       for (const OutputFile* other : files) {
         if (!other->temporary_.empty()) targets[other->temporary_].clear();
       }
-      file->fail("rename", cause);
+      fail_output(file->target_, "rename", cause);
     }
     if (!replaces) added.push_back(file);
   }
@@ -230,14 +258,6 @@ const char* OutputFile::store() {
   // fsync reports a full disk before an older file is replaced.
   if (!temporary_.empty() && ::fsync(descriptor_) != 0) return "write";
   return ::close(std::exchange(descriptor_, -1)) == 0 ? nullptr : "close";
-}
-
-void OutputFile::fail(const char* doing, int cause) const {
-  throw UnwritableFile(
-      fmt::format("{}: cannot {} the file: {}: check the folder, its permissions and the "
-                  "space on the disk",
-                  target_.string(), doing, std::strerror(cause)),
-      cause);
 }
 
 void abandon_output_files() noexcept {

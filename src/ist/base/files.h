@@ -45,6 +45,11 @@ class IST_LOOP_API InputFile {
   std::uint64_t size_ = 0;
 };
 
+/// Throws the error of an OutputFile that cannot be created, and creates nothing. Long work checks
+/// its output so before it begins: a missing folder, a folder in the file's place, or permissions.
+/// A full disk is found only when the file is written.
+void require_writable(const std::filesystem::path& file);
+
 /// A kFileUnwritable, with the system's number of the cause (errno): EPIPE of a pipe that nobody
 /// reads any more is often no failure of the command that writes to it.
 class UnwritableFile : public Error {
@@ -89,7 +94,6 @@ class IST_LOOP_API OutputFile {
   static void await_names(std::span<OutputFile* const> files, bool await);
   // Brings the content to the disk. Returns what failed, with errno, or nullptr.
   const char* store();
-  [[noreturn]] void fail(const char* doing, int cause) const;
 
   std::filesystem::path target_, temporary_;  // temporary_ is empty when written directly
   int descriptor_ = -1;

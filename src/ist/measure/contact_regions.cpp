@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "ist/base/ordered_vector.h"
 #include "ist/mesh/components.h"
@@ -18,16 +20,22 @@ using Vector = Eigen::Vector3d;
 std::vector<std::uint32_t> joined(const RefinedSurface& surface, double contact) {
   const auto& triangles = surface.triangles();
   const auto touches = [&](std::uint32_t v) { return surface.vertices()[v].distance <= contact; };
-  DisjointSets sets(triangles.size());
-  std::unordered_map<std::uint64_t, std::uint32_t> first;  // triangle at an edge
+  // An edge, by its vertices, and a triangle at it. If whole surfaces touch, sorting is faster than
+  // a hash table.
+  using Side = std::pair<std::uint64_t, std::uint32_t>;
+  std::vector<Side> sides;
   for (std::uint32_t k = 0; k < triangles.size(); ++k) {
     for (std::size_t i = 0; i < 3; ++i) {
       const auto [low, high] =
           std::minmax(triangles[k].vertex[i], triangles[k].vertex[(i + 1) % 3]);
       if (!touches(low) && !touches(high)) continue;
-      const auto [other, is_new] = first.try_emplace(std::uint64_t{low} << 32 | high, k);
-      if (!is_new) sets.join(other->second, k);
+      sides.emplace_back(std::uint64_t{low} << 32 | high, k);
     }
+  }
+  std::sort(sides.begin(), sides.end());
+  DisjointSets sets(triangles.size());
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    if (sides[i].first == sides[i - 1].first) sets.join(sides[i - 1].second, sides[i].second);
   }
   std::vector<std::uint32_t> of(triangles.size());
   for (std::uint32_t k = 0; k < of.size(); ++k) of[k] = sets.find(k);

@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -6,11 +5,11 @@
 
 #include "ist/base/angles.h"
 #include "ist/base/direction.h"
-#include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/ordered_vector.h"
 #include "ist/base/pose.h"
 #include "ist/base/rigid_move.h"
+#include "ist/base/throw_error.h"
 #include "ist/measure/first_contact.h"
 #include "ist/measure/require.h"
 
@@ -24,9 +23,9 @@ constexpr double kFarthestPose = 1e15;
 
 void require_near(double number, const char* name) {
   if (std::abs(number) <= kFarthestPose) return;  // no NaN
-  throw Error(ErrorCode::kArgumentInvalid,
-              fmt::format("{}: {} is not finite, or beyond {:g}: give a nearer motion", name,
-                          number, kFarthestPose));
+  throw_error(ErrorCode::kArgumentInvalid,
+              "{}: {} is not finite, or beyond {:g}: give a nearer motion", name, number,
+              kFarthestPose);
 }
 
 void store(const Vector& from, double (&to)[3]) {
@@ -77,10 +76,9 @@ Motion Motion::screw(const Eigen::Isometry3d& from, const Vector& point, const V
   require_near(along, "along");
   const std::optional<Direction> towards = direction_of(direction);
   if (!towards) {
-    throw Error(
-        ErrorCode::kArgumentInvalid,
-        fmt::format("direction: ({}, {}, {}) is {}: give another, or a translation", direction[0],
-                    direction[1], direction[2], direction.allFinite() ? "0" : "not finite"));
+    throw_error(ErrorCode::kArgumentInvalid,
+                "direction: ({}, {}, {}) is {}: give another, or a translation", direction[0],
+                direction[1], direction[2], direction.allFinite() ? "0" : "not finite");
   }
   Motion motion;
   for (Eigen::Index i = 0; i < 3; ++i) {

@@ -1,13 +1,9 @@
 #include "ist/measure/occlusion.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <span>
 #include <utility>
 
@@ -16,6 +12,7 @@
 #include "ist/base/ordered_vector.h"
 #include "ist/base/pose.h"
 #include "ist/base/rigid_move.h"
+#include "ist/base/throw_error.h"
 #include "ist/measure/contact_regions.h"
 #include "ist/measure/point_search.h"
 #include "ist/measure/refined_surface.h"
@@ -88,7 +85,7 @@ constexpr double kVertices = 0.4;
 
 void require(bool fine, const char* name, double value, const char* remedy) {
   if (fine) return;
-  throw Error(ErrorCode::kArgumentInvalid, fmt::format("{}: {} {}", name, value, remedy));
+  throw_error(ErrorCode::kArgumentInvalid, "{}: {} {}", name, value, remedy);
 }
 
 void require_options(const OcclusionOptions& options) {

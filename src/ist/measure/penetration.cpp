@@ -1,8 +1,5 @@
 #include "ist/measure/penetration.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>

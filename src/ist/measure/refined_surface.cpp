@@ -1,13 +1,9 @@
 #include "ist/measure/refined_surface.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
 #include <unordered_map>
 
-#include "ist/base/error.h"
-#include "ist/measure/point_search.h"
+#include "ist/base/throw_error.h"
 
 namespace ist {
 namespace {
@@ -45,6 +41,7 @@ RefinedSurface::RefinedSurface(const SurfaceInBody& side, std::vector<Vertex> ve
   while (!open.empty()) {
     std::vector<RefinedTriangle> next;
     std::unordered_map<std::uint64_t, std::uint32_t> middles;  // of this round's edges
+    middles.reserve(open.size() + open.size() / 2);
     std::vector<Vector> points;
     const auto first = static_cast<std::uint32_t>(vertices_.size());
     // Enough to leave out what is made of the longest triangle, and to hold what is inside.
@@ -90,10 +87,10 @@ RefinedSurface::RefinedSurface(const SurfaceInBody& side, std::vector<Vertex> ve
       next.insert(next.end(), {{{v[0], a, c}, of}, {{c, b, v[2]}, of}, {{a, b, c}, of}});
     }
     if (triangles_.size() + next.size() > kMostTriangles) {
-      throw Error(ErrorCode::kMemoryLimit,
-                  fmt::format("longest_edge: with {} the surfaces near each other are over {} "
-                              "triangles: give a longer one",
-                              longest_edge, kMostTriangles));
+      throw_error(ErrorCode::kMemoryLimit,
+                  "longest_edge: with {} the surfaces near each other are over {} "
+                  "triangles: give a longer one",
+                  longest_edge, kMostTriangles);
     }
     complete_ = proceed(0) && add_vertices(side, points, reach, proceed);
     if (!complete_) return;

@@ -1,12 +1,10 @@
 #include "ist/measure/signed_distance.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
-#include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/rigid_move.h"
+#include "ist/base/throw_error.h"
 #include "ist/measure/point_search.h"
 #include "ist/measure/require.h"
 
@@ -19,10 +17,10 @@ constexpr double kFarthestPoint = 1e15;
 
 void require_reach(double reach) {
   if (reach > 0) return;  // no NaN
-  throw Error(ErrorCode::kArgumentInvalid,
-              fmt::format("reach: {} is not positive: give the distance beyond which nothing is "
-                          "looked for, or infinity",
-                          reach));
+  throw_error(ErrorCode::kArgumentInvalid,
+              "reach: {} is not positive: give the distance beyond which nothing is "
+              "looked for, or infinity",
+              reach);
 }
 
 bool is_fit(const Vector& p) {
@@ -33,9 +31,9 @@ bool is_fit(const Vector& p) {
 void require_points(std::span<const Vector> points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (is_fit(points[i])) continue;
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("point {}: ({}, {}, {}) is not finite, or beyond {:g}: leave it out", i,
-                            points[i][0], points[i][1], points[i][2], kFarthestPoint));
+    throw_error(ErrorCode::kArgumentInvalid,
+                "point {}: ({}, {}, {}) is not finite, or beyond {:g}: leave it out", i,
+                points[i][0], points[i][1], points[i][2], kFarthestPoint);
   }
 }
 

@@ -7,9 +7,11 @@
 #include <string_view>
 
 #include "ist/base/cancellation.h"
+#include "ist/base/counted.h"
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/ordered_vector.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/bounding_box.h"
 #include "ist/mesh/components.h"
 #include "ist/mesh/mesh.h"
@@ -113,25 +115,23 @@ void require_valid(const TriangleMesh& mesh) {
     throw mesh.vertices.empty()
         ? Error(ErrorCode::kMeshEmpty, "the mesh has no vertices and no triangles: pass some")
         : Error(ErrorCode::kMeshPointsOnly,
-                fmt::format("the mesh has {} vertices, but no triangles: pass some",
-                            mesh.vertices.size()));
+                fmt::format("the mesh has {}, but no triangles: pass some",
+                            counted(mesh.vertices.size(), "vertex", "vertices")));
   }
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Eigen::Vector3d& v = mesh.vertices[i];
     if (!(std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]))) {
-      throw Error(
-          ErrorCode::kMeshNotFinite,
-          fmt::format("vertex {} is ({}, {}, {}): pass finite numbers", i, v[0], v[1], v[2]));
+      throw_error(ErrorCode::kMeshNotFinite, "vertex {} is ({}, {}, {}): pass finite numbers", i,
+                  v[0], v[1], v[2]);
     }
   }
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     for (const std::uint32_t vertex : mesh.triangles[i]) {
       if (vertex < mesh.vertices.size()) continue;
-      throw Error(
-          ErrorCode::kMeshBadIndex,
-          fmt::format("triangle {} has the vertex index {}, but there are {} vertices: count "
-                      "from 0",
-                      i, vertex, mesh.vertices.size()));
+      throw_error(ErrorCode::kMeshBadIndex,
+                  "triangle {} has the vertex index {}, but there {} {}: count from 0", i, vertex,
+                  mesh.vertices.size() == 1 ? "is" : "are",
+                  counted(mesh.vertices.size(), "vertex", "vertices"));
     }
   }
 }
@@ -187,10 +187,10 @@ std::vector<std::string> warnings(const MeshReport& report) {
   if (report.self_intersections > 0) {
     const SelfIntersection& first = report.first_self_intersections.front();
     sentences.push_back(fmt::format(
-        "The surface intersects itself: {}{} pair{} of triangles, first {} and {} near "
+        "The surface intersects itself: {}{} of triangles, first {} and {} near "
         "({:g}, {:g}, {:g}).{}",
-        report.self_intersections_complete ? "" : "at least ", report.self_intersections,
-        report.self_intersections == 1 ? "" : "s", first.triangles[0], first.triangles[1],
+        report.self_intersections_complete ? "" : "at least ",
+        counted(report.self_intersections, "pair"), first.triangles[0], first.triangles[1],
         first.near[0], first.near[1], first.near[2],
         report.closed && report.consistent ? " Winding numbers decide what is inside." : ""));
   }

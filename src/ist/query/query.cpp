@@ -7,7 +7,6 @@
 
 #include "ist/base/access.h"
 #include "ist/base/float_environment.h"
-#include "ist/base/pose.h"
 #include "ist/query/contacts/contact_reducer.h"
 #include "ist/query/query_state.h"
 #include "ist/query/traversal/budget_meter.h"

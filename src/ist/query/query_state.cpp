@@ -1,10 +1,7 @@
 #include "ist/query/query_state.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 #include "ist/query/query_rules.h"
 #include "ist/query/relative_pose.h"
 #include "ist/query/traversal/search_pose.h"
@@ -30,10 +27,10 @@ const SphereTree& comparable(const SphereTree& fixed, const SphereTree& moving,
   const auto refuse_half = [](const SphereTree& a, const char* name, const SphereTree& b,
                               const char* other) {
     if (a.has_voxels() || b.triangles() != nullptr) return;
-    throw Error(ErrorCode::kVoxelsMissing,
-                fmt::format("query: the {} tree has no voxels, and the {} tree no triangles: build "
-                            "the first with a voxel size, or the second with keep_triangles",
-                            name, other));
+    throw_error(ErrorCode::kVoxelsMissing,
+                "query: the {} tree has no voxels, and the {} tree no triangles: build the first "
+                "with a voxel size, or the second with keep_triangles",
+                name, other);
   };
   refuse_half(fixed, "fixed", moving, "moving");
   refuse_half(moving, "moving", fixed, "fixed");
@@ -71,14 +68,14 @@ TriangleOptions triangle_options(const QueryOptions& options) {
 std::size_t bytes_with(const std::optional<SearchPlan>& plan, const SphereTree& fixed,
                        const SphereTree& moving, const QueryOptions& options) {
   if (options.workers != 1 && options.workers != 2) {
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("query option workers is {}: give 1 or 2", options.workers));
+    throw_error(ErrorCode::kArgumentInvalid, "query option workers is {}: give 1 or 2",
+                options.workers);
   }
   for (const auto& [name, pairs] :
        {std::pair{"front_pairs", options.front_pairs}, {"near_pairs", options.near_pairs}}) {
     if (pairs <= kMostItems) continue;
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("query option {} is {}: {} is the most", name, pairs, kMostItems));
+    throw_error(ErrorCode::kArgumentInvalid, "query option {} is {}: {} is the most", name, pairs,
+                kMostItems);
   }
   std::size_t bytes = plan ? bytes_of_leaves(*plan, options) : 0;
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {

@@ -143,7 +143,7 @@ enum class TrianglePart : std::uint8_t {
 
 /// Closest points of two triangles, or of parts of them. Points are in fixed coordinates, lengths
 /// in mesh units.
-struct NearPair {
+struct IST_API NearPair {
   TrianglePair triangles = {};       ///< by their indices in the meshes
   double distance = 0;               ///< 0 if the triangles intersect
   Eigen::Vector3d fixed_point = {},  ///< on the fixed triangle
@@ -153,7 +153,7 @@ struct NearPair {
 
   /// Returns the unit vector from the fixed point to the moving one; 0 if the triangles intersect,
   /// or if the points are the same.
-  [[nodiscard]] IST_API Eigen::Vector3d direction() const noexcept;
+  [[nodiscard]] Eigen::Vector3d direction() const noexcept;
 };
 
 /// The answer of Query::near_pairs.

@@ -1,15 +1,13 @@
 #include "ist/tree/sphere_tree.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "ist/base/assert.h"
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/ordered_vector.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/bounding_box.h"
 #include "ist/mesh/components.h"
 #include "ist/tree/mesh_source.h"
@@ -111,8 +109,8 @@ const TreeTriangles::Lazy& TreeTriangles::made() const {
 
 void require_voxels(const SphereTree& tree, std::string_view body) {
   if (tree.has_voxels()) return;
-  throw Error(ErrorCode::kVoxelsMissing,
-              fmt::format("{}: the tree holds no voxels: build it with a voxel size", body));
+  throw_error(ErrorCode::kVoxelsMissing, "{}: the tree holds no voxels: build it with a voxel size",
+              body);
 }
 
 Eigen::Vector3d middle_of(const TriangleMesh& mesh) noexcept {
@@ -179,16 +177,16 @@ SpherePolicy SphereTree::tightest() const noexcept {
 void SphereTree::require(SpherePolicy policy, std::string_view body) const {
   if (has(policy)) return;
   if (!has_voxels()) {
-    throw Error(ErrorCode::kPolicyMissing,
-                fmt::format("{}: the tree holds no voxels, and so no {} spheres: build it with a "
-                            "voxel size, or name no spheres",
-                            body, to_string(policy)));
+    throw_error(
+        ErrorCode::kPolicyMissing,
+        "{}: the tree holds no voxels, and so no {} spheres: build it with a voxel size, or "
+        "name no spheres",
+        body, to_string(policy));
   }
-  throw Error(
-      ErrorCode::kPolicyMissing,
-      fmt::format("{}: the tree holds no {} spheres: build it with --spheres {}, or ask for "
-                  "simple or table",
-                  body, to_string(policy), to_string(policy)));
+  throw_error(ErrorCode::kPolicyMissing,
+              "{}: the tree holds no {} spheres: build it with --spheres {}, or ask for "
+              "simple or table",
+              body, to_string(policy), to_string(policy));
 }
 
 double SphereTree::largest_leaf_radius(SpherePolicy policy) const noexcept {

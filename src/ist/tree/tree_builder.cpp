@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 
 #include <bit>
 #include <chrono>
@@ -6,6 +5,7 @@
 
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/bounding_box.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/bound_builder.h"
@@ -135,19 +135,17 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
                       Progress* progress) {
   const ScopedFloatEnvironment environment;
   if (const char* flaw = source_flaw(options.source)) {
-    throw Error(
-        ErrorCode::kArgumentInvalid,
-        fmt::format("source: {}: give a file's name without its folder, and a LengthUnit", flaw));
+    throw_error(ErrorCode::kArgumentInvalid,
+                "source: {}: give a file's name without its folder, and a LengthUnit", flaw);
   }
   if (to_string(mesh.frame).empty() || to_string(options.frame).empty()) {
     throw Error(ErrorCode::kArgumentInvalid, "frame: it is out of range: give a PatientFrame");
   }
   MeshSource source = options.source;
   if (to_string(mesh.unit).empty() || contradict(source.unit, mesh.unit)) {
-    throw Error(
-        ErrorCode::kArgumentInvalid,
-        fmt::format("source: its unit is {}, and the mesh's is {}: leave one of them unknown",
-                    to_string(source.unit), to_string(mesh.unit)));
+    throw_error(ErrorCode::kArgumentInvalid,
+                "source: its unit is {}, and the mesh's is {}: leave one of them unknown",
+                to_string(source.unit), to_string(mesh.unit));
   }
   if (source.unit == LengthUnit::kUnknown) source.unit = mesh.unit;
   require_valid(mesh);

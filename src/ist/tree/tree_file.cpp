@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -8,6 +9,7 @@
 
 #include "ist/base/cancellation.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/platform/bit_cast.h"
 #include "ist/mesh/bounding_box.h"
 #include "ist/tree/mesh_source.h"
 #include "ist/tree/sphere_tree.h"
@@ -205,14 +207,19 @@ void verify_mesh(const TreeReader& reader, const TriangleMesh& mesh) {
   }
 }
 
-bool is_without_voxels(const Header& header) { return header.voxel_size == 0 && header.cells == 0; }
+// Bit by bit, so that a file is written as it was read.
+bool is_zero(double number) { return bit_cast<std::uint64_t>(number) == 0; }
+
+bool is_without_voxels(const Header& header) {
+  return is_zero(header.voxel_size) && header.cells == 0;
+}
 
 // Verifies the header and the triangles of a tree without voxels.
 void verify_no_voxels(const TreeReader& reader, const Header& header, const TriangleMesh& mesh) {
-  constexpr std::array<double, 3> kNoCorner{};
   reader.require(header.sections == kTrianglesSection, "without voxels it has other sections");
-  reader.require(header.corner == kNoCorner && header.depth == 0,
-                 "it has a grid without a voxel size");
+  reader.require(
+      std::all_of(header.corner.begin(), header.corner.end(), is_zero) && header.depth == 0,
+      "it has a grid without a voxel size");
   verify_mesh(reader, mesh);
   reader.require(has_usable_extent(bounding_box(mesh)), "its extent is none that a mesh may have");
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ist/base/cancellation.h"
+#include "ist/base/throw_error.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist {
@@ -131,7 +132,7 @@ void TreeReader::corrupt(const char* what) const {
 }
 
 void TreeReader::fail(ErrorCode code, const std::string& what) const {
-  throw Error(code, fmt::format("{}: {}", name_, what));
+  throw_error(code, "{}: {}", name_, what);
 }
 
 }  // namespace ist

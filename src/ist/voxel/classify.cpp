@@ -1,7 +1,5 @@
 #include "ist/voxel/classify.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -9,9 +7,9 @@
 #include <limits>
 #include <optional>
 
-#include "ist/base/error.h"
 #include "ist/base/ordered_vector.h"
 #include "ist/base/parallel.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/components.h"
 #include "ist/mesh/nearest_point.h"
 #include "ist/mesh/surface_sides.h"
@@ -196,10 +194,10 @@ class BlockClassifier {
 std::vector<std::uint64_t> proximity_voxels(const TriangleMesh& mesh, const VoxelSet& surface) {
   const std::uint32_t cells = surface.lattice.cells + 2 * kProximityMargin;
   if (cells > Lattice::kMaxCells) {
-    throw Error(ErrorCode::kVoxelSizeTooSmall,
-                fmt::format("proximity voxels need a margin of {} voxels on each side, {} voxels "
-                            "an axis, and the limit is {}: use a slightly larger voxel size",
-                            kProximityMargin, cells, Lattice::kMaxCells));
+    throw_error(ErrorCode::kVoxelSizeTooSmall,
+                "proximity voxels need a margin of {} voxels on each side, {} voxels "
+                "an axis, and the limit is {}: use a slightly larger voxel size",
+                kProximityMargin, cells, Lattice::kMaxCells);
   }
   const LatticeMesh lattice_mesh(mesh, surface.lattice, kProximityMargin);
   const PseudoNormals normals(mesh);

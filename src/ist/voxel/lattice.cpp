@@ -8,7 +8,6 @@
 #include <string>
 #include <string_view>
 
-#include "ist/base/error.h"
 #include "ist/base/platform/from_chars.h"
 #include "ist/mesh/bounding_box.h"
 

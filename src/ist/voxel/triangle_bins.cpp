@@ -1,9 +1,7 @@
 #include "ist/voxel/triangle_bins.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <bit>
-#include <cmath>
 #include <limits>
 #include <numbers>
 

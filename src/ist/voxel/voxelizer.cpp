@@ -15,6 +15,7 @@
 #include "ist/base/float_environment.h"
 #include "ist/base/ordered_vector.h"
 #include "ist/base/parallel.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/bounding_box.h"
 #include "ist/voxel/triangle_bins.h"
 #include "ist/voxel/triangle_clip.h"
@@ -277,11 +278,10 @@ double expected_size(const Memory& memory, double least, double most) {
   } else {
     do {
       if (enough >= one_voxel) {
-        throw Error(
-            ErrorCode::kMemoryLimit,
-            fmt::format("the mesh has {} triangles, and needs more than the allowed {} bytes of "
-                        "memory with voxels of any size: allow more memory, or simplify it",
-                        mesh.triangles.size(), options.max_memory));
+        throw_error(ErrorCode::kMemoryLimit,
+                    "the mesh has {} triangles, and needs more than the allowed {} bytes of "
+                    "memory with voxels of any size: allow more memory, or simplify it",
+                    mesh.triangles.size(), options.max_memory);
       }
       too_small = enough;
       enough = std::min(one_voxel, step * enough);
@@ -301,10 +301,8 @@ double expected_size(const Memory& memory, double least, double most) {
                         expected.pairs)
           : fmt::format("more than the allowed {} bytes of memory, some {:.2g}: allow more memory",
                         options.max_memory, memory.needed(expected));
-  throw Error(
-      ErrorCode::kMemoryLimit,
-      fmt::format("voxel size {} needs {}{} use a voxel size of {} or larger", options.voxel_size,
-                  needs, expected.pairs > kMaxCount ? ":" : ", or", named));
+  throw_error(ErrorCode::kMemoryLimit, "voxel size {} needs {}{} use a voxel size of {} or larger",
+              options.voxel_size, needs, expected.pairs > kMaxCount ? ":" : ", or", named);
 }
 
 // Sums the normals in the voxels of one block, and writes the voxels to their places.
@@ -430,9 +428,9 @@ VoxelSet voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options, Pro
   Progress& shown = progress != nullptr ? *progress : unseen;
   const Eigen::AlignedBox3d box = bounding_box(mesh);
   if (mesh.triangles.size() > kMaxTriangles) {
-    throw Error(ErrorCode::kMemoryLimit,
-                fmt::format("the mesh has {} triangles, and the limit is {}: simplify the mesh",
-                            mesh.triangles.size(), kMaxTriangles));
+    throw_error(ErrorCode::kMemoryLimit,
+                "the mesh has {} triangles, and the limit is {}: simplify the mesh",
+                mesh.triangles.size(), kMaxTriangles);
   }
   VoxelSet set;
   set.lattice = make_lattice(box.min(), box.max(), options.voxel_size);

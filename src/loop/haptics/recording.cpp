@@ -1,8 +1,6 @@
 #include "ist/haptics/recording.h"
 
-#include <fmt/format.h>
-
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 
 namespace ist {
 
@@ -47,8 +45,8 @@ std::optional<Placement> to_placement(const TickRecord::Pose& numbers) noexcept 
 std::size_t detail::ring_capacity(std::size_t asked) {
   constexpr std::uint64_t kMost = std::uint64_t{1} << 32;
   if (asked == 0 || std::uint64_t{asked} > kMost) {
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("a ring for {} records: give a capacity from 1 to {}", asked, kMost));
+    throw_error(ErrorCode::kArgumentInvalid, "a ring for {} records: give a capacity from 1 to {}",
+                asked, kMost);
   }
   return std::bit_ceil(asked);
 }

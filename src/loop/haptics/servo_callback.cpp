@@ -1,12 +1,10 @@
 #include "ist/haptics/servo_callback.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "ist/base/error.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/throw_error.h"
 
 namespace ist {
 namespace {
@@ -19,15 +17,14 @@ std::chrono::nanoseconds seconds(double count) {
 
 void check(const ServoCallbackOptions& options) {
   if (!(std::isfinite(options.unit) && options.unit > 0)) {
-    throw Error(
-        ErrorCode::kArgumentInvalid,
-        fmt::format("the unit of poses is {} m: give its length in metres, such as 1 or 0.001",
-                    options.unit));
+    throw_error(ErrorCode::kArgumentInvalid,
+                "the unit of poses is {} m: give its length in metres, such as 1 or 0.001",
+                options.unit);
   }
   if (!(options.query_time_fraction > 0 && options.query_time_fraction <= 1)) {
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("query_time_fraction is {}: give a number above 0 and at most 1",
-                            options.query_time_fraction));
+    throw_error(ErrorCode::kArgumentInvalid,
+                "query_time_fraction is {}: give a number above 0 and at most 1",
+                options.query_time_fraction);
   }
 }
 

@@ -1,11 +1,10 @@
 #include "ist/haptics/servo_loop.h"
 
-#include <fmt/format.h>
 #include <time.h>
 
 #include <thread>
 
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 #include "loop/haptics/real_time.h"
 #include "loop/haptics/tick_clock.h"
 
@@ -145,9 +144,9 @@ class Loop {
 ServoReport run_servo_loop(Simulation& simulation, Device& device, const ServoOptions& options,
                            const ServoOutputs& outputs, const std::atomic<bool>& stop) {
   if (!(options.query_time_fraction > 0 && options.query_time_fraction <= 1)) {
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("query_time_fraction is {}: give a number above 0 and at most 1",
-                            options.query_time_fraction));
+    throw_error(ErrorCode::kArgumentInvalid,
+                "query_time_fraction is {}: give a number above 0 and at most 1",
+                options.query_time_fraction);
   }
   // An unpaced loop must not keep other threads from their processor.
   std::optional<RealTimeThread> real_time;

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "ist/base/error.h"
-#include "ist/mesh/mesh.h"
 #include "ist/tree/tree_parts.h"
 #include "ist/voxel/voxelizer.h"
 #include "loop/scene/scene_lines.h"

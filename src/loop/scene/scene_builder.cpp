@@ -202,12 +202,12 @@ void Builder::refuse_to_take(bool outside_is_known) const {
   const auto refuse = [&](const char* key, const std::vector<SceneBody>& bodies) {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       if (!bodies[i].attachable) continue;
-      fail_at(scene_, path_of_body(key, i, bodies.size()) + ".attachable",
-              fmt::format("whether anything touches {} is not known: {}", bodies[i].name,
-                          outside_is_known
-                              ? "add the table [effects.contact]"
-                              : "give closed meshes, or set trust_normals = true where the "
-                                "normals of one that is open point outward"));
+      fail_at(
+          scene_, path_of_body(key, i, bodies.size()) + ".attachable",
+          fmt::format("whether anything touches {} is not known: {}", bodies[i].name,
+                      outside_is_known ? "add the table [effects.contact]"
+                                       : "give closed meshes, or set trust_normals = true where "
+                                         "the normals of one that is open point outward"));
     }
   };
   refuse("fixed", scene_.fixed);
@@ -293,11 +293,10 @@ void Builder::place_tool() {
                           : asked.size() == 1 ? "one body is inside the other"
                                               : fmt::format("of {} one is inside the other", which);
   if (!scene_.open) {
-    fail_at(
-        scene_, "held.open",
-        fmt::format("{} where the device starts: name the axis along which they open in [held], "
-                    "as open = \"-z\", or start elsewhere",
-                    how));
+    fail_at(scene_, "held.open",
+            fmt::format("{} where the device starts: name the axis along which they open in "
+                        "[held], as open = \"-z\", or start elsewhere",
+                        how));
   }
   const std::optional<double> way = start.open_distance();
   if (!way) {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 #include "loop/scene/toml_document.h"
 
 namespace ist {
@@ -46,10 +46,10 @@ std::string path_of_body(std::string_view key, std::size_t index, std::size_t co
 
 void fail_at(const Scene& scene, std::string_view key, std::string_view text) {
   if (!scene.lines) {
-    throw Error(ErrorCode::kInputInvalid, fmt::format("the scene's {}: {}", key, text));
+    throw_error(ErrorCode::kInputInvalid, "the scene's {}: {}", key, text);
   }
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{}:{}: {}", scene.file.string(), scene.lines->line_of(key), text));
+  throw_error(ErrorCode::kInputInvalid, "{}:{}: {}", scene.file.string(), scene.lines->line_of(key),
+              text);
 }
 
 }  // namespace ist

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "loop/haptics/bodies/hand_bodies.h"

@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/throw_error.h"
 #include "ist/models/models.h"
 #include "ist/scene.h"
 
@@ -13,8 +13,8 @@ constexpr int kCylinderQuarter = 64, kFossaQuarter = 32;
 
 void check_length(double length) {
   if (length >= 1e-12 && length <= 1e12) return;
-  throw Error(ErrorCode::kArgumentInvalid,
-              fmt::format("a shape of length {}: give lengths from 1e-12 to 1e12", length));
+  throw_error(ErrorCode::kArgumentInvalid, "a shape of length {}: give lengths from 1e-12 to 1e12",
+              length);
 }
 
 TriangleMesh centred_cylinder(double radius, double height) {

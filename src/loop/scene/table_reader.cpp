@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "loop/scene/spelling.h"
 
@@ -38,6 +36,15 @@ std::optional<double> as_number(const TomlValue& value) {
   }
   if (const auto* real = std::get_if<double>(&value.content)) return *real;
   return std::nullopt;
+}
+
+// The whole number of a value, as 1000 or 1e3, below 2^63.
+std::optional<std::int64_t> as_whole_number(const TomlValue& value) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value.content)) return *integer;
+  constexpr double kEnd = 0x1p63;
+  const auto* real = std::get_if<double>(&value.content);
+  const bool is_whole = real != nullptr && std::abs(*real) < kEnd && std::trunc(*real) == *real;
+  return is_whole ? std::optional(static_cast<std::int64_t>(*real)) : std::nullopt;
 }
 
 std::string triple_in(const NumberRange& range) {
@@ -177,8 +184,8 @@ std::uint64_t TableReader::whole_number(std::string_view key, const NumberRange&
 std::uint64_t TableReader::whole_number(std::string_view key, const NumberRange& range) {
   const std::string what = "a whole number, " + range.values();
   note(key, what, range.unit);
-  const auto* integer = std::get_if<std::int64_t>(&required(key, what).content);
-  if (integer == nullptr || !range.holds(static_cast<double>(*integer))) fail_value(key, what);
+  const std::optional<std::int64_t> integer = as_whole_number(required(key, what));
+  if (!integer || !range.holds(static_cast<double>(*integer))) fail_value(key, what);
   return static_cast<std::uint64_t>(*integer);
 }
 
@@ -256,7 +263,7 @@ void TableReader::fail_value(std::string_view key, std::string_view what) const 
        fmt::format("give {}", what));
 }
 
-void TableReader::fail_missing(std::string_view key, std::string_view what) const {
+void TableReader::refuse_misspelt() const {
   for (const TomlEntry& each : table_.entries) {
     if (known(each.key) != nullptr) continue;
     for (const KnownKey& key_known : table_.known) {
@@ -265,6 +272,10 @@ void TableReader::fail_missing(std::string_view key, std::string_view what) cons
       }
     }
   }
+}
+
+void TableReader::fail_missing(std::string_view key, std::string_view what) const {
+  refuse_misspelt();
   fail(key, fmt::format("{} has no '{}'", name(), key), fmt::format("give {}", what));
 }
 
@@ -291,6 +302,7 @@ void TableReader::refuse_unknown() const {
       TableReader(file_, *table, path).refuse_unknown();
     }
   };
+  refuse_misspelt();
   for (TomlEntry& each : table_.entries) {
     if (known(each.key) == nullptr) fail_unknown(each);
     descend(each.value, path_of(each.key));

@@ -51,7 +51,7 @@ class TableReader {
   [[nodiscard]] Eigen::Matrix3d rotation(std::string_view key);
   [[nodiscard]] std::uint64_t whole_number(std::string_view key, const NumberRange& range,
                                            std::uint64_t otherwise);
-  /// A whole number that is required.
+  /// A whole number that is required. A float such as 1e3 is one if it has no fraction.
   [[nodiscard]] std::uint64_t whole_number(std::string_view key, const NumberRange& range);
   [[nodiscard]] bool flag(std::string_view key, bool otherwise);
   /// A text. `what` describes it in messages.
@@ -77,6 +77,8 @@ class TableReader {
                          std::string_view remedy) const;
   /// Throws for a missing key, or for a key that looks like a misspelling of it.
   [[noreturn]] void fail_missing(std::string_view key, std::string_view what) const;
+  /// Throws for a key that was not asked for, if it looks like a missing one.
+  void refuse_misspelt() const;
   /// Throws if the table, or a table in it, has a key that was not asked for.
   void refuse_unknown() const;
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "ist/base/error.h"
 #include "ist/base/files.h"
+#include "ist/base/throw_error.h"
 
 #define TOML_HEADER_ONLY 1
 #define TOML_EXCEPTIONS 0
@@ -97,8 +97,7 @@ class Conversion {
 
 void fail_line(const std::filesystem::path& file, std::size_t line, std::string_view wrong,
                std::string_view remedy) {
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{}:{}: {}: {}", file.string(), line, wrong, remedy));
+  throw_error(ErrorCode::kInputInvalid, "{}:{}: {}: {}", file.string(), line, wrong, remedy);
 }
 
 std::string read_toml_text(const std::filesystem::path& file) {

@@ -1,5 +1,9 @@
 """The library's errors as Python's."""
 
+import difflib
+import re
+import sys
+
 from . import _c
 from ._library import LIBRARY
 
@@ -56,11 +60,34 @@ KINDS = {
 }
 
 
+_FUNCTION = re.compile(r"\bist_(query|servo|sweep|tree|world)_(\w+)")
+_QUESTION = re.compile(r"\bIST_ASK_([A-Z_]+)")
+
+
+def _asked():
+    """Returns the name of the function or the class of this package that was called, such as World.ask or ist.build."""
+    frame = sys._getframe()
+    while frame.f_back is not None and frame.f_back.f_globals.get("__package__") == __package__:
+        frame = frame.f_back
+    function, owner = frame.f_code.co_name, frame.f_locals.get("self")
+    if owner is None:
+        return f"ist.{function}"
+    kind = type(owner).__name__
+    return f"ist.{kind}" if function == "__init__" else f"{kind}.{function}"
+
+
+def in_python(text):
+    """Returns a message of the library with Python's names. It begins with the function that was called."""
+    _, _, text = text.partition(": ")  # after the name of C's function
+    text = text.replace("options->", "").replace("question->", "")  # their members are arguments here
+    text = _FUNCTION.sub(lambda found: f"{found[1].title()}.{found[2]}", text)
+    return f"{_asked()}: " + _QUESTION.sub(lambda found: f'"{found[1].lower()}"', text)
+
+
 def error_of(status, text=None):
     """Returns the exception of a status, with the library's last message unless a text is given."""
     if text is None:
-        # A member of C's options is an argument here.
-        text = LIBRARY.ist_last_error_message().decode("utf-8", "replace").replace("options->", "")
+        text = in_python(LIBRARY.ist_last_error_message().decode("utf-8", "replace"))
     error = KINDS.get(status, InputError)(text)
     error.code = status
     error.name = LIBRARY.ist_status_name(status).decode()
@@ -76,3 +103,12 @@ def check(status):
 def refuse(text):
     """Raises an InputError of this package's own: the argument never reached the library."""
     raise error_of(_c.IST_ARGUMENT_INVALID, text)
+
+
+def need_word(word, known, what):
+    """Raises an InputError for a word that is not known. The text has the word that is spelled most like it, and all words."""
+    if word in known:
+        return
+    nearest = difflib.get_close_matches(word, known, 1) if isinstance(word, str) else []
+    guess = f"did you mean {nearest[0]!r}? " if nearest else ""
+    refuse(f"{what} is {word!r}: {guess}pass one of {', '.join(known)}")

@@ -21,7 +21,7 @@ from ._c import (
     Penetration as PenetrationResult,
     RowsOptions,
 )
-from ._errors import check, refuse
+from ._errors import check, need_word, refuse
 from ._follow import Follower
 from ._library import LIBRARY
 from ._tree import need_tree
@@ -152,9 +152,10 @@ def rows(
     handle = self._enter()
     try:
         at = by_columns(floats(poses, (None, 4, 4), "poses"))
-        unknown = [name for name in ([want] if isinstance(want, str) else want) if name not in QUESTIONS]
-        if unknown or isinstance(want, str) or len(want) == 0:
+        if isinstance(want, str) or len(want) == 0:
             refuse(f"want is {want!r}: pass a list of some of {', '.join(QUESTIONS)}")
+        for name in want:
+            need_word(name, QUESTIONS, "a word of want")
         found = np.empty(len(at), ROW) if out is None else out
         place = place_of(found, ROW, len(at))
         options = RowsOptions(

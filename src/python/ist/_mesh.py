@@ -109,7 +109,7 @@ def handle_of(mesh, progress=None):
 def read_mesh(path, *, progress=None):
     """Reads a mesh file: returns vertices, (V, 3) float64, and faces, (T, 3) uint32.
 
-    STL, PLY, OBJ, OFF and VTK PolyData; by the program ist-import glTF, 3MF, COLLADA, FBX and others.
+    STL, PLY, OBJ, OFF and VTK PolyData; by the program ist-import glTF, 3MF, COLLADA, FBX, X3D, AMF, 3DS, AC3D and LightWave.
 
     Vertices with equal coordinates are merged. The arrays have no unit and no frame: build() of a path keeps those that
     the file states. progress: called while the file is read; what it raises ends that. Raises

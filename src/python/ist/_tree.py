@@ -6,7 +6,7 @@ import numpy as np
 
 from ._arrays import address, count_of, number_of
 from ._c import BuildOptions, TreeInfo
-from ._errors import check, refuse
+from ._errors import check, need_word
 from ._follow import Follower
 from ._handle import Handle, Out
 from ._library import LIBRARY
@@ -19,8 +19,7 @@ FRAMES = ("unknown", "ras", "lps")
 
 def spheres_number(name):
     """Returns the library's number of a kind of spheres."""
-    if name not in SPHERES:
-        refuse(f"spheres is {name!r}: pass one of {', '.join(SPHERES)}")
+    need_word(name, SPHERES, "spheres")
     return SPHERES.index(name)
 
 
@@ -191,8 +190,7 @@ def build(
     21863
     """
     kind = spheres_number(spheres)
-    if frame not in FRAMES:
-        refuse(f"frame is {frame!r}: pass one of {', '.join(FRAMES)}")
+    need_word(frame, FRAMES, "frame")
     options = BuildOptions(
         voxel_size=number_of(voxel_size, "voxel_size"),
         spheres=kind,

@@ -19,7 +19,7 @@ from ._c import (
     WorldQuestion,
     WorldResult,
 )
-from ._errors import check, error_of, refuse
+from ._errors import check, error_of, need_word, refuse
 from ._follow import Follower
 from ._handle import Lone, Out
 from ._library import LIBRARY
@@ -191,8 +191,7 @@ class World(Lone):
         into: an array of LEAF_PAIR or TRIANGLE_PAIR that is filled by one pair of bodies after the other; by default one of
         65,536. out: an array of WORLD_PAIR that is filled by the rows; by default one with room for all.
         """
-        if question not in QUESTIONS:
-            refuse(f"question is {question!r}: pass one of {', '.join(QUESTIONS)}")
+        need_word(question, QUESTIONS, "question")
         number, dtype = QUESTIONS[question]
         width = number_of(tolerance, "tolerance")
         place, length = None, 0

@@ -1,11 +1,8 @@
 #include "viewer/engine/asked.h"
 
-#include <fmt/format.h>
-
-#include <cmath>
-
 #include "ist/base/error.h"
 #include "ist/base/pose.h"
+#include "ist/base/throw_error.h"
 
 namespace ist::viewer {
 
@@ -22,7 +19,7 @@ const nlohmann::json* Asked::find(const char* name) const {
 }
 
 void Asked::refuse(const char* name, const char* wanted) {
-  throw Error(ErrorCode::kArgumentInvalid, fmt::format("{}: give {}", name, wanted));
+  throw_error(ErrorCode::kArgumentInvalid, "{}: give {}", name, wanted);
 }
 
 double Asked::number(const char* name) const {
@@ -63,8 +60,8 @@ Eigen::Isometry3d Asked::pose(const char* name) const {
     pose.matrix().data()[i] = (*found)[i].get<double>();
   }
   if (!project_to_rigid(pose)) {
-    throw Error(ErrorCode::kPoseInvalid,
-                fmt::format("{}: it is no rigid motion: {}", name, why_not_rigid(pose)));
+    throw_error(ErrorCode::kPoseInvalid, "{}: it is no rigid motion: {}", name,
+                why_not_rigid(pose));
   }
   return pose;
 }

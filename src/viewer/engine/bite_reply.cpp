@@ -1,5 +1,3 @@
-#include "viewer/engine/bite_reply.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,12 +7,13 @@
 
 #include "answers/formats/glb_writer.h"
 #include "answers/json_parts.h"
-#include "answers/occlusion/bite_json.h"
+#include "answers/occlusion/bite_files.h"
 #include "answers/occlusion/bite_maker.h"
 #include "answers/occlusion/bite_surfaces.h"
 #include "answers/occlusion/map_colours.h"
-#include "ist/base/error.h"
 #include "ist/base/files.h"
+#include "ist/base/throw_error.h"
+#include "viewer/engine/replies.h"
 
 namespace ist::viewer {
 namespace {
@@ -30,15 +29,14 @@ answers::Bite bite_of(const answers::Bodies& bodies, const Asked& asked, Progres
   const auto found = std::find_if(answers::presets().begin(), answers::presets().end(),
                                   [&](const answers::Preset& each) { return each.name == preset; });
   if (found == answers::presets().end()) {
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("preset: no preset has the name {}", preset));
+    throw_error(ErrorCode::kArgumentInvalid, "preset: no preset has the name {}", preset);
   }
   questions.preset = &*found;
   questions.reach = asked.number("reach");
   if (!(questions.reach > 0) || questions.reach < 1e-3 * found->micrometres.back()) {
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("reach: give at least the preset's largest limit, {:g} µm",
-                            found->micrometres.back()));
+    throw_error(ErrorCode::kArgumentInvalid,
+                "reach: give at least the preset's largest limit, {:g} µm",
+                found->micrometres.back());
   }
   if (bodies.unit() == LengthUnit::kUnknown) questions.unit = asked.unit();
   questions.sides.frame = asked.text_or_none("frame");

@@ -1,15 +1,13 @@
-#include "viewer/engine/facing_reply.h"
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "answers/extents.h"
 #include "answers/measure_progress.h"
 #include "answers/occlusion/bite_direction.h"
 #include "answers/occlusion/sides.h"
 #include "ist/measure/occlusion.h"
+#include "viewer/engine/replies.h"
 
 namespace ist::viewer {
 namespace {

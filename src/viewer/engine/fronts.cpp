@@ -1,12 +1,10 @@
 #include "viewer/engine/fronts.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
-#include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/pose.h"
+#include "ist/base/throw_error.h"
 #include "ist/query/relative_pose.h"
 #include "ist/query/traversal/root_test.h"
 #include "ist/query/traversal/search.h"
@@ -82,8 +80,7 @@ std::vector<StepFront> record_fronts(const SphereTree& fixed, const SphereTree& 
   const SearchPlan plan(fixed, moving, policy, last);
   const auto relative = relative_pose(pose, parts_of(fixed).origin, parts_of(moving).origin);
   if (!relative) {
-    throw Error(ErrorCode::kPoseInvalid,
-                fmt::format("pose: it is no rigid motion: {}", why_not_rigid(pose)));
+    throw_error(ErrorCode::kPoseInvalid, "pose: it is no rigid motion: {}", why_not_rigid(pose));
   }
   if (!test_roots(fixed, moving, policy, *relative).overlap) return {};
   std::vector<StepFront> fronts(plan.steps().size());

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 

@@ -1,10 +1,7 @@
-#include "viewer/engine/level_reply.h"
-
-#include <fmt/format.h>
-
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/tree_parts.h"
+#include "viewer/engine/replies.h"
 
 namespace ist::viewer {
 namespace {
@@ -33,8 +30,8 @@ void fill_slabs(const SphereTree& tree, int level, Reply& reply) {
 void fill_level(const SphereTree& tree, SpherePolicy policy, int level, Reply& reply) {
   tree.require(policy, "the body");
   if (level < 0 || level > tree.depth()) {
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("level {}: the tree has levels 0 to {}", level, tree.depth()));
+    throw_error(ErrorCode::kArgumentInvalid, "level {}: the tree has levels 0 to {}", level,
+                tree.depth());
   }
   std::vector<float> centres, radii;
   for (const Ball& ball : level_spheres(tree, policy, level)) {

@@ -1,7 +1,5 @@
 #include "viewer/engine/page_body.h"
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <utility>
@@ -10,7 +8,7 @@
 #include "answers/extents.h"
 #include "answers/formats/level_geometry.h"
 #include "answers/json_parts.h"
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 #include "ist/tree/tree_parts.h"
 
 namespace ist::viewer {
@@ -45,9 +43,8 @@ PageBody::PageBody(const std::filesystem::path& file, LengthUnit unit, PatientFr
   if (is_tree_file(file)) {
     tree_ = read_tree(file);
     if (contradict(tree_->frame(), to_frame)) {
-      throw Error(
-          ErrorCode::kArgumentInvalid,
-          fmt::format("{}: a tree cannot be turned into another frame: open its mesh", name_));
+      throw_error(ErrorCode::kArgumentInvalid,
+                  "{}: a tree cannot be turned into another frame: open its mesh", name_);
     }
     whole_ = tree_;  // trees share their content
     source_ = tree_->source();

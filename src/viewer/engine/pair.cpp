@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <vector>
 
 #include "answers/answer.h"

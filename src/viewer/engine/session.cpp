@@ -15,9 +15,7 @@
 #include "ist/base/error.h"
 #include "ist/measure/first_contact.h"
 #include "ist/models/models.h"
-#include "viewer/engine/bite_reply.h"
-#include "viewer/engine/facing_reply.h"
-#include "viewer/engine/level_reply.h"
+#include "viewer/engine/replies.h"
 
 namespace ist::viewer {
 namespace {
@@ -60,23 +58,23 @@ Reply Session::answer(const std::string& question, const Asked& asked, Progress&
   } else if (question == "save_glb") {
     reply.json["bytes"] = reply.array(coloured_glb(whole(), asked, progress));
   } else if (question == "make_jaws") {
-    return make_jaws(asked);
+    make_jaws(asked, reply);
   } else if (question == "open") {
-    return open(asked);
+    open(asked, reply);
   } else if (question == "build") {
-    return build(asked, progress);
+    build(asked, progress, reply);
   } else if (question == "first_contact") {
-    return first_contact(asked, progress);
+    first_contact(asked, progress, reply);
   } else if (question == "level") {
-    return level(asked);
+    level(asked, reply);
   } else if (question == "touched") {
-    return touched(asked);
+    touched(asked, reply);
   } else if (question == "fronts") {
-    return fronts(asked);
+    fronts(asked, reply);
   } else if (question == "front") {
-    return front(asked);
+    front(asked, reply);
   } else if (question == "save_body") {
-    return save_body(asked);
+    save_body(asked, reply);
   } else if (question == "memory") {
     // A count that is an int, and is read as one without a sign.
     reply.json["in_use"] = static_cast<std::uint32_t>(mallinfo().uordblks);
@@ -109,15 +107,14 @@ void Session::name(answers::Bodies& bodies) {
   bodies.fixed_name = present(Role::kFixed).name();
   bodies.moving_name = present(Role::kMoving).name();
   if (contradict(bodies.fixed.frame(), bodies.moving.frame())) {
-    refuse(
-        fmt::format("{} is in the frame {}, and {} in {}: turn one into the other, in the panel "
-                    "Bodies",
-                    bodies.fixed_name, to_string(bodies.fixed.frame()), bodies.moving_name,
-                    to_string(bodies.moving.frame())));
+    refuse(fmt::format(
+        "{} is in the frame {}, and {} in {}: turn one into the other, in the panel Bodies",
+        bodies.fixed_name, to_string(bodies.fixed.frame()), bodies.moving_name,
+        to_string(bodies.moving.frame())));
   }
 }
 
-Reply Session::make_jaws(const Asked& asked) {
+void Session::make_jaws(const Asked& asked, Reply& reply) {
   const std::uint64_t seed = asked.count("seed");
   const std::filesystem::path upper = file_of(Role::kFixed, "upper_jaw.stl"),
                               lower = file_of(Role::kMoving, "lower_jaw.stl");
@@ -127,12 +124,10 @@ Reply Session::make_jaws(const Asked& asked) {
   PageBody fixed(upper, LengthUnit::kUnknown), moving(lower, LengthUnit::kUnknown);
   std::filesystem::remove(upper);
   std::filesystem::remove(lower);
-  Reply reply;
   reply.json["fixed"] = fixed.facts(reply);
   reply.json["moving"] = moving.facts(reply);
   take(Role::kFixed, std::move(fixed));
   take(Role::kMoving, std::move(moving));
-  return reply;
 }
 
 void Session::take(Role role, PageBody read) {
@@ -141,13 +136,11 @@ void Session::take(Role role, PageBody read) {
   recorded_.reset();
 }
 
-Reply Session::open(const Asked& asked) {
+void Session::open(const Asked& asked, Reply& reply) {
   const Role role = asked.role();
   PageBody read(file_of(role, asked.text("name")), asked.unit(), asked.to_frame());
-  Reply reply;
   reply.json = read.facts(reply);
   take(role, std::move(read));
-  return reply;
 }
 
 void Session::swap() {
@@ -156,7 +149,7 @@ void Session::swap() {
   recorded_.reset();
 }
 
-Reply Session::build(const Asked& asked, Progress& progress) {
+void Session::build(const Asked& asked, Progress& progress, Reply& reply) {
   PageBody &fixed = present(Role::kFixed), &moving = present(Role::kMoving);
   const double extent = std::min(fixed.extent(), moving.extent());
   const double voxel_size =
@@ -173,22 +166,19 @@ Reply Session::build(const Asked& asked, Progress& progress) {
   moving.take(std::move(other));
   pairs_ = std::move(pairs);
   recorded_.reset();
-  Reply reply;
   reply.json = {{"fixed", fixed.tree_facts()}, {"moving", moving.tree_facts()}};
   reply.json["policies"] = nlohmann::ordered_json::array();
   for (const SpherePolicy policy : kSpherePolicies) {
     if (policy <= pairs_->bodies().policy) reply.json["policies"].push_back(to_string(policy));
   }
-  return reply;
 }
 
-Reply Session::first_contact(const Asked& asked, Progress& progress) {
+void Session::first_contact(const Asked& asked, Progress& progress, Reply& reply) {
   progress.begin_stage("looking for the first contact", 0);
   const Motion motion = Motion::between(asked.pose("from"), asked.pose("to"));
   const FirstContact found =
       ist::first_contact(pairs().of({}).query(), motion, asked.number("tolerance"));
   const Eigen::Isometry3d pose = motion.at(found.upper);
-  Reply reply;
   reply.json = {{"status", to_string(found.status)},
                 {"lower", found.lower},
                 {"upper", found.upper},
@@ -198,18 +188,15 @@ Reply Session::first_contact(const Asked& asked, Progress& progress) {
     const Eigen::Vector3d point = answers::shared_point(pairs().bodies(), *found.triangles, pose);
     reply.json["point"] = {point[0], point[1], point[2]};
   }
-  return reply;
 }
 
-Reply Session::level(const Asked& asked) {
+void Session::level(const Asked& asked, Reply& reply) {
   const answers::Bodies& bodies = pairs().bodies();
-  Reply reply;
   fill_level(asked.role() == Role::kFixed ? bodies.fixed : bodies.moving,
              asked.policy().value_or(bodies.policy), level_of(asked), reply);
-  return reply;
 }
 
-Reply Session::touched(const Asked& asked) {
+void Session::touched(const Asked& asked, Reply& reply) {
   const answers::Bodies& bodies = pairs().bodies();
   const int level = level_of(asked);
   const SearchLevels last{std::min(level, bodies.fixed.depth()),
@@ -218,10 +205,8 @@ Reply Session::touched(const Asked& asked) {
       record_fronts(bodies.fixed, bodies.moving, asked.policy().value_or(bodies.policy),
                     asked.pose("pose"), last);
   const StepFront none, &at = fronts.empty() ? none : fronts.back();
-  Reply reply;
   reply.json["fixed"] = reply.array(nodes_in(at.fixed));
   reply.json["moving"] = reply.array(nodes_in(at.moving));
-  return reply;
 }
 
 const std::vector<StepFront>& Session::recorded(const Asked& asked) {
@@ -234,8 +219,7 @@ const std::vector<StepFront>& Session::recorded(const Asked& asked) {
   return recorded_->fronts;
 }
 
-Reply Session::fronts(const Asked& asked) {
-  Reply reply;
+void Session::fronts(const Asked& asked, Reply& reply) {
   reply.json["steps"] = nlohmann::ordered_json::array();
   for (const StepFront& front : recorded(asked)) {
     reply.json["steps"].push_back({{"fixed_level", front.fixed_level},
@@ -243,29 +227,24 @@ Reply Session::fronts(const Asked& asked) {
                                    {"tests", front.tests},
                                    {"pairs", front.pairs}});
   }
-  return reply;
 }
 
-Reply Session::front(const Asked& asked) {
+void Session::front(const Asked& asked, Reply& reply) {
   const std::vector<StepFront>& fronts = recorded(asked);
   const std::uint64_t step = asked.count("step");
   if (step >= fronts.size()) {
     refuse(fmt::format("step {}: the query has {} steps", step, fronts.size()));
   }
   const StepFront& front = fronts[step];
-  Reply reply;
   reply.json = {{"fixed_level", front.fixed_level}, {"moving_level", front.moving_level}};
   reply.json["fixed"] = reply.array(front.fixed);
   reply.json["moving"] = reply.array(front.moving);
-  return reply;
 }
 
-Reply Session::save_body(const Asked& asked) {
+void Session::save_body(const Asked& asked, Reply& reply) {
   const PageBody& saved = present(asked.role());
   if (!saved.tree()) refuse("the tree is not built: build it first");
-  Reply reply;
   reply.json["bytes"] = reply.array(bytes_of(tree_to_bytes(*saved.tree())));
-  return reply;
 }
 
 }  // namespace ist::viewer

@@ -29,17 +29,17 @@ class Session {
     std::vector<StepFront> fronts;
   };
 
-  [[nodiscard]] Reply make_jaws(const Asked& asked);
-  [[nodiscard]] Reply open(const Asked& asked);
+  void make_jaws(const Asked& asked, Reply& reply);
+  void open(const Asked& asked, Reply& reply);
   /// Gives each body the other one's role.
   void swap();
-  [[nodiscard]] Reply build(const Asked& asked, Progress& progress);
-  [[nodiscard]] Reply first_contact(const Asked& asked, Progress& progress);
-  [[nodiscard]] Reply level(const Asked& asked);
-  [[nodiscard]] Reply touched(const Asked& asked);
-  [[nodiscard]] Reply fronts(const Asked& asked);
-  [[nodiscard]] Reply front(const Asked& asked);
-  [[nodiscard]] Reply save_body(const Asked& asked);
+  void build(const Asked& asked, Progress& progress, Reply& reply);
+  void first_contact(const Asked& asked, Progress& progress, Reply& reply);
+  void level(const Asked& asked, Reply& reply);
+  void touched(const Asked& asked, Reply& reply);
+  void fronts(const Asked& asked, Reply& reply);
+  void front(const Asked& asked, Reply& reply);
+  void save_body(const Asked& asked, Reply& reply);
 
   /// Puts a body in the place of another, and forgets their pairs. All that may fail is done
   /// before: where memory ends, the bodies that the page shows are those that answer.

@@ -33,6 +33,12 @@ TEST(FileFormats, EachIsKnownByItsEndingInAnyCase) {
   }
 }
 
+TEST(FileFormats, HelpsNameThePrograms) {
+  constexpr std::array kSome{FileFormat::kVtp, FileFormat::kCsv, FileFormat::kJson};
+  EXPECT_EQ(answers::endings_with_programs(kSome),
+            ".vtp (ParaView, 3D Slicer), .csv (Excel, R) or .json");
+}
+
 TEST(FileFormats, WhatCannotBeWrittenIsRefusedWithARemedy) {
   EXPECT_EQ(refusal("v.stl", {FileFormat::kVtp, FileFormat::kPly}),
             "-o v.stl: .stl cannot be written here: name a file that ends in .vtp or .ply");

@@ -85,7 +85,7 @@ TEST(LabelsOfObj, ThatAreAlsoAnStlAreRefused) {
   file += std::string("\1\0\0\0", 4) + std::string(50, '\0');
   file.replace(96, 4, "\0\0\x80\x3F", 4);  // one coordinate is 1
   const std::string text = refusal_of("jaw.obj", file);
-  EXPECT_NE(text.find("2 labels for 1 triangles"), text.npos) << text;
+  EXPECT_NE(text.find("2 labels for 1 triangle"), text.npos) << text;
 }
 
 }  // namespace

@@ -178,6 +178,7 @@ TEST(BiteHtml, HoldsTheContactsByTheirNumbers) {
   }
   EXPECT_EQ(page.table("contacts").size(), 3U);
   EXPECT_EQ(page.table("contacts-on-one").size(), 2U);
+  EXPECT_TRUE(page.says(answers::kSharesOnOneBody));
 }
 
 // A number stands in both pictures where its contact is closest.
@@ -248,7 +249,7 @@ TEST(BiteHtml, HoldsTheFindings) {
   expect_numbers(answer("depth of the deepest vertex"),
                  {1000 * *made->bite.findings.depth.at_vertices}, 0.5);
   EXPECT_EQ(answer("area inside the other body, mean of both"), "2.75 mm²");
-  EXPECT_EQ(answer("deepest point"), "(1.5, -2.25, 3.13)");
+  EXPECT_EQ(answer("deepest point"), "(1.5, -2.25, 3.13) mm");
   EXPECT_EQ(answer("note"), "a note for people");
   EXPECT_EQ(rows.size(), 9U)
       << "of contact points, which are as coarse as voxels, it tells nothing";

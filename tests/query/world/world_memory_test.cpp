@@ -96,7 +96,7 @@ TEST_F(WorldMemory, BeyondTheLimitNamesThePair) {
     } else {
       EXPECT_TRUE(has(limit >= two ? "'lower jaw' and 'plate'" : "'upper jaw' and 'plate'"))
           << text;
-      EXPECT_TRUE(has(limit >= two ? "with 2 pairs before it" : "with 1 pairs before it")) << text;
+      EXPECT_TRUE(has(limit >= two ? "with 2 pairs before it" : "with 1 pair before it")) << text;
       EXPECT_TRUE(has("prepare fewer pairs")) << text;
     }
     // Nothing was made.

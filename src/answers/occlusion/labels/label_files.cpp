@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "ist/base/counted.h"
 #include "ist/base/printable.h"
 
 namespace ist::answers {
@@ -82,8 +83,8 @@ ToothLabels labels_in_place(const std::filesystem::path& file, const ToothLabels
   turn_into(labelled, mesh.frame);
   for (Eigen::Vector3d& vertex : labelled.vertices) vertex *= factor;
   if (labels.size() != labelled.triangles.size()) {
-    refuse_labels(file, fmt::format("{} labels for {} triangles: export it again", labels.size(),
-                                    labelled.triangles.size()));
+    refuse_labels(file, fmt::format("{} for {}: export it again", counted(labels.size(), "label"),
+                                    counted(labelled.triangles.size(), "triangle")));
   }
   std::vector<std::pair<Place, int>> known;
   known.reserve(labels.size());

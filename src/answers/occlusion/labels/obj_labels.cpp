@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "answers/occlusion/labels/label_files.h"
-#include "ist/base/error.h"
 #include "ist/base/printable.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/format/text_reader.h"
 
@@ -62,8 +62,8 @@ class NameReader {
          name = reader.word_before_comment()) {
       const int named = tooth_of_name(name, place, naming.noun);
       if (named != 0 && tooth != 0 && named != tooth) {
-        throw Error(ErrorCode::kInputInvalid,
-                    fmt::format("{} names tooth {} and tooth {}", place, tooth, named));
+        throw_error(ErrorCode::kInputInvalid, "{} names tooth {} and tooth {}", place, tooth,
+                    named);
       }
       if (named != 0) tooth = named;
     }
@@ -88,12 +88,12 @@ class NameReader {
     const auto [rest, error] = std::from_chars(digits.data(), end, number);
     const bool other_system = system && system != numbers_;
     if (error != std::errc() || rest != end || other_system) {
-      throw Error(ErrorCode::kInputInvalid,
-                  fmt::format("{} names the {} \"{}\", which is {}: name a tooth by its number "
-                              "alone, such as 16 or tooth_16, and what is no tooth by a word",
-                              place, noun, printable(name),
-                              other_system ? "a number of another system than --numbering"
-                                           : "no tooth's number"));
+      throw_error(
+          ErrorCode::kInputInvalid,
+          "{} names the {} \"{}\", which is {}: name a tooth by its number "
+          "alone, such as 16 or tooth_16, and what is no tooth by a word",
+          place, noun, printable(name),
+          other_system ? "a number of another system than --numbering" : "no tooth's number");
     }
     if (!is_tooth_number(number, numbers_)) refuse_tooth_number(number, numbers_, place);
     return number;

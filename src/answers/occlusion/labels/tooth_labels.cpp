@@ -6,16 +6,16 @@
 #include <system_error>
 
 #include "answers/occlusion/labels/label_files.h"
-#include "ist/base/error.h"
+#include "ist/base/counted.h"
 #include "ist/base/files.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/format/text_reader.h"
 
 namespace ist::answers {
 namespace {
 
 constexpr const char* kFdi =
-    "FDI numbers are 11 to 18 up to 41 to 48, of milk teeth 51 to 55 up "
-    "to 81 to 85; 0 is no tooth";
+    "FDI numbers are 11 to 18 up to 41 to 48, of milk teeth 51 to 55 up to 81 to 85; 0 is no tooth";
 constexpr const char* kUniversal = "universal numbers are 1 to 32; 0 is no tooth";
 
 bool is_vtk(const std::filesystem::path& file) {
@@ -55,9 +55,8 @@ bool is_tooth_number(std::int64_t number, ToothNumbers system) {
 }
 
 void refuse_tooth_number(std::int64_t number, ToothNumbers system, const std::string& place) {
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{} is {}: {}; see --numbering", place, number,
-                          system == ToothNumbers::kFdi ? kFdi : kUniversal));
+  throw_error(ErrorCode::kInputInvalid, "{} is {}: {}; see --numbering", place, number,
+              system == ToothNumbers::kFdi ? kFdi : kUniversal);
 }
 
 std::string text_of(const std::filesystem::path& file) {
@@ -68,7 +67,7 @@ std::string text_of(const std::filesystem::path& file) {
 }
 
 void refuse_labels(const std::filesystem::path& file, const std::string& detail) {
-  throw Error(ErrorCode::kInputInvalid, fmt::format("{}: {}", file.string(), detail));
+  throw_error(ErrorCode::kInputInvalid, "{}: {}", file.string(), detail);
 }
 
 LabelSource label_source(const std::filesystem::path& file) {
@@ -95,9 +94,12 @@ ToothLabels read_labels(const std::filesystem::path& given, const TriangleMesh& 
   std::vector<int> labels = labels_of_lines(file, numbers);
   if (labels.size() == mesh.triangles.size()) return labels;
   if (labels.size() == mesh.vertices.size()) return of_triangles(file, mesh, labels);
-  refuse_labels(file, fmt::format("{} labels for a mesh of {} triangles and {} vertices: write one "
-                                  "a line for each triangle, or for each vertex",
-                                  labels.size(), mesh.triangles.size(), mesh.vertices.size()));
+  refuse_labels(
+      file,
+      fmt::format(
+          "{} for a mesh of {} and {}: write one a line for each triangle, or for each vertex",
+          counted(labels.size(), "label"), counted(mesh.triangles.size(), "triangle"),
+          counted(mesh.vertices.size(), "vertex", "vertices")));
 }
 
 }  // namespace ist::answers

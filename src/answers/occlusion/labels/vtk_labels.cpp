@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "answers/occlusion/labels/label_files.h"
-#include "ist/base/error.h"
 #include "ist/base/printable.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/format/vtk_surface.h"
 
 namespace ist::answers {
@@ -75,8 +75,7 @@ std::vector<int> tooth_numbers(const Array& array, const std::filesystem::path& 
   };
   for (const double number : array.numbers) {
     if (!(std::abs(number) < 1e9) || number != std::floor(number)) {
-      throw Error(ErrorCode::kInputInvalid,
-                  fmt::format("{} is {}: write whole numbers", place(), number));
+      throw_error(ErrorCode::kInputInvalid, "{} is {}: write whole numbers", place(), number);
     }
     const auto label = static_cast<int>(number);
     const int tooth = is_gum(label, system) ? 0 : label;
@@ -101,10 +100,9 @@ ToothLabels labels_of_vtk(const LabelSource& source, ToothNumbers system) {
       const auto& [a, b, c] = face.points;
       of_triangles.push_back(tooth_of_corners(numbers[a], numbers[b], numbers[c]));
     } else {
-      refuse_labels(source.file,
-                    fmt::format("cell {} has {} corners, and labels of points need three: "
-                                "triangulate the mesh, or label its cells",
-                                face.cell, face.corners));
+      refuse_labels(source.file, fmt::format("cell {} has {} corners, and labels of points need "
+                                             "three: triangulate the mesh, or label its cells",
+                                             face.cell, face.corners));
     }
   }
   return of_triangles;

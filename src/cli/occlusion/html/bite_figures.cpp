@@ -1,14 +1,12 @@
-#include "cli/occlusion/html/bite_figures.h"
-
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include "answers/occlusion/map_colours.h"
 #include "cli/occlusion/bite_view.h"
+#include "cli/occlusion/html/html_parts.h"
 #include "cli/occlusion/html/html_text.h"
 #include "cli/occlusion/map_picture.h"
 #include "ist/base/parallel.h"

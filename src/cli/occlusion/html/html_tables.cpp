@@ -1,5 +1,3 @@
-#include "cli/occlusion/html/html_tables.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "answers/occlusion/bite_numbers.h"
+#include "cli/occlusion/html/html_parts.h"
 #include "cli/occlusion/html/html_text.h"
 
 namespace ist::cli {
@@ -136,7 +135,7 @@ std::string findings_table(const Bite& bite) {
     table.add({"area inside the other body, mean of both", numbers.area(*depth.area) + " mm²"});
   if (depth.point)
     table.add({bite.region ? "deepest vertex in the region" : "deepest point",
-               numbers.place(*depth.point)});
+               numbers.place(*depth.point) + " " + escaped(bite.unit)});
   for (const std::string& note : found.notes) table.add({"note", escaped(note)});
   return table.html();
 }
@@ -234,7 +233,8 @@ std::string contact_tables(const Bite& bite) {
               numbers.volume(contact.depth_integral), numbers.place(contact.centre),
               numbers.place(contact.closest)});
   }
-  return (both.empty() ? "" : both.html()) + (alone.empty() ? "" : alone.html());
+  const std::string reading = fmt::format("<p>Shares: {}.</p>\n", kSharesOnOneBody);
+  return (both.empty() ? "" : both.html()) + (alone.empty() ? "" : alone.html() + reading);
 }
 
 }  // namespace ist::cli

@@ -1,8 +1,6 @@
 #include "ist/mesh/clusters/triangle_clusters.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 #include "ist/base/ordered_vector.h"

@@ -16,8 +16,9 @@ inline constexpr std::size_t kStlFacetBytes = 50;
 
 struct VtkLabels;
 
-/// The formats that read_content() reads, for messages and helps.
-inline constexpr std::string_view kMeshFormats = "STL, PLY, OBJ, OFF, VTK PolyData, glTF or 3MF";
+/// The formats that read_content() reads, for messages and helps. Headers and pages name the same.
+inline constexpr std::string_view kMeshFormats =
+    "STL, PLY, OBJ, OFF, VTK PolyData, glTF, 3MF, COLLADA, FBX, X3D, AMF, 3DS, AC3D or LightWave";
 
 /// Reads the content of a mesh file, whose format the content tells (of an OBJ and an OFF also the
 /// name). The file itself is not opened. glTF, 3MF and formats of assimp go to read_imported().

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "ist/base/counted.h"
 #include "ist/mesh/format/frame_tags.h"
 #include "ist/mesh/format/mesh_builder.h"
 #include "ist/mesh/format/mesh_readers.h"
@@ -86,8 +87,8 @@ class ObjReader {
   [[noreturn]] void fail_without_faces(bool statement_seen, bool other_seen) const {
     if (surface_.vertices() > 0)
       fail_mesh(ErrorCode::kMeshPointsOnly, file_, "",
-                fmt::format("the file has {} vertices, but no face; export the surface as polygons",
-                            surface_.vertices()));
+                fmt::format("the file has {}, but no face; export the surface as polygons",
+                            counted(surface_.vertices(), "vertex", "vertices")));
     if (other_seen && !statement_seen)
       fail_mesh(ErrorCode::kNotAMesh, file_, "",
                 "the name ends in .obj, but no line is an OBJ statement; export the mesh again");

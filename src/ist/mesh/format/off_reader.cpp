@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "ist/base/counted.h"
 #include "ist/base/printable.h"
 #include "ist/mesh/format/mesh_builder.h"
 #include "ist/mesh/format/mesh_readers.h"
@@ -189,8 +190,8 @@ class OffReader {
       fail_mesh(ErrorCode::kMeshEmpty, file_, "", "the OFF has no vertex; export the mesh again");
     if (surface.faces() == 0)
       fail_mesh(ErrorCode::kMeshPointsOnly, file_, "",
-                fmt::format("the file has {} vertices, but no face; export the surface as polygons",
-                            surface.vertices()));
+                fmt::format("the file has {}, but no face; export the surface as polygons",
+                            counted(surface.vertices(), "vertex", "vertices")));
     return surface.weld();
   }
 

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
 #include <string_view>
 #include <utility>
@@ -85,10 +83,9 @@ class PlyBytes {
  private:
   std::string_view take(std::size_t size) {
     if (content_.size() - offset_ < size)
-      fail(ErrorCode::kMeshTruncated,
-           fmt::format("the file ends within this element, one of {} that its header counts; copy "
-                       "or export it again",
-                       element_->count));
+      fail(ErrorCode::kMeshTruncated, fmt::format("the file ends within this element, one of {} "
+                                                  "that its header counts; copy or export it again",
+                                                  element_->count));
     return content_.substr(std::exchange(offset_, offset_ + size), size);
   }
 

@@ -70,10 +70,9 @@ PlyProperty read_property(TextReader& reader, std::string_view element) {
   if (name.empty()) reader.fail_malformed("a property has no name; export the mesh again");
   if (element == "vertex" && role_of("face", name) == PlyRole::kCorners)
     // Blender 2.7 omits the element 'face' of a mesh without faces, but not its list.
-    reader.fail(
-        ErrorCode::kMeshPointsOnly,
-        "the header declares corners of faces, but no element 'face'; export the surface as "
-        "polygons");
+    reader.fail(ErrorCode::kMeshPointsOnly,
+                "the header declares corners of faces, but no element 'face'; export the surface "
+                "as polygons");
   property.name = name;
   property.role = role_of(element, name);
   const bool list_expected = property.role == PlyRole::kCorners;
@@ -143,10 +142,8 @@ PlyHeader read_ply_header(TextReader& reader) {
       PlyElement& element = header.elements.back();
       element.properties.push_back(read_property(reader, element.name));
     } else {
-      reader.fail_malformed(
-          fmt::format("'{}' is not expected in the header of a PLY; export the "
-                      "mesh again",
-                      printable(word)));
+      reader.fail_malformed(fmt::format(
+          "'{}' is not expected in the header of a PLY; export the mesh again", printable(word)));
     }
   }
   reader.fail(ErrorCode::kMeshTruncated,

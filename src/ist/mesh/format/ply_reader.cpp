@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "ist/base/counted.h"
 #include "ist/mesh/format/mesh_builder.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/format/ply_body.h"
@@ -100,8 +101,8 @@ TriangleMesh read_elements(Body body, const PlyHeader& header, std::string_view 
     fail_mesh(ErrorCode::kMeshEmpty, file, "", "the PLY has no vertex; export the mesh again");
   if (surface.faces() == 0)
     fail_mesh(ErrorCode::kMeshPointsOnly, file, "",
-              fmt::format("the file has {} vertices, but no face; export the surface as polygons",
-                          surface.vertices()));
+              fmt::format("the file has {}, but no face; export the surface as polygons",
+                          counted(surface.vertices(), "vertex", "vertices")));
   TriangleMesh mesh = surface.weld();
   mesh.frame = header.frame;
   return mesh;

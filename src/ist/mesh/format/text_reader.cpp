@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <system_error>
 
 #include "ist/base/platform/from_chars.h"
 #include "ist/base/printable.h"
+#include "ist/base/throw_error.h"
 
 namespace ist {
 namespace {
@@ -52,7 +51,7 @@ std::optional<double> number_of(std::string_view word, Precision precision) {
 
 void fail_mesh(ErrorCode code, std::string_view file, std::string_view place,
                std::string_view cause) {
-  throw Error(code, fmt::format("{}: {}{}{}", file, place, place.empty() ? "" : ": ", cause));
+  throw_error(code, "{}: {}{}{}", file, place, place.empty() ? "" : ": ", cause);
 }
 
 bool is_coordinate(double number) {
@@ -135,10 +134,9 @@ double TextReader::coordinate(std::string_view word, Precision precision) const 
   if (!number)
     fail_malformed(fmt::format("'{}' is not a number; export the mesh again", printable(word)));
   if (!is_coordinate(*number))
-    fail(ErrorCode::kMeshNotFinite,
-         fmt::format("the coordinate '{}' is not finite, or beyond a float's range; repair the "
-                     "mesh where it was made",
-                     printable(word)));
+    fail(ErrorCode::kMeshNotFinite, fmt::format("the coordinate '{}' is not finite, or beyond a "
+                                                "float's range; repair the mesh where it was made",
+                                                printable(word)));
   return *number;
 }
 

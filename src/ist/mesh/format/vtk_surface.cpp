@@ -7,9 +7,9 @@
 #include <optional>
 #include <utility>
 
+#include "ist/base/counted.h"
 #include "ist/base/printable.h"
 #include "ist/mesh/format/mesh_readers.h"
-#include "ist/mesh/format/text_reader.h"
 
 namespace ist {
 namespace {
@@ -174,17 +174,18 @@ TriangleMesh VtkSurface::finish(PatientFrame frame) const {
     fail_mesh(ErrorCode::kMeshEmpty, file_.name, "",
               "the PolyData has no point; export the mesh again");
   if (surface_.faces() == 0)
-    fail_mesh(ErrorCode::kMeshPointsOnly, file_.name, "",
-              fmt::format("the file has {} points, but no polygon or strip; export the surface as "
-                          "polygons",
-                          surface_.vertices()));
+    fail_mesh(
+        ErrorCode::kMeshPointsOnly, file_.name, "",
+        fmt::format("the file has {}, but no polygon or strip; export the surface as polygons",
+                    counted(surface_.vertices(), "point")));
   for (const VtkLabels::Array& array :
        labels_ ? labels_->arrays : std::vector<VtkLabels::Array>()) {
     const std::uint64_t expected = array.of_cells ? cell_ : surface_.vertices();
     if (array.numbers.size() != expected)
       fail_mesh(ErrorCode::kNotAMesh, file_.name, printable(array.name),
-                fmt::format("the array holds {} numbers for {} {}; export the mesh again",
-                            array.numbers.size(), expected, array.of_cells ? "cells" : "points"));
+                fmt::format("the array holds {} for {}; export the mesh again",
+                            counted(array.numbers.size(), "number"),
+                            counted(expected, array.of_cells ? "cell" : "point")));
   }
   TriangleMesh mesh = surface_.weld();
   mesh.frame = frame;

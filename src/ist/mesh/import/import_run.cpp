@@ -1,24 +1,21 @@
 #include "ist/mesh/import/import_run.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <utility>
 #include <vector>
 
 #include "ist/base/cancellation.h"
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 #include "ist/mesh/import/import_message.h"
 
 namespace ist {
@@ -30,9 +27,9 @@ constexpr std::size_t kAtOnce = std::size_t{1} << 18;  // bytes, between two can
 
 [[noreturn]] void fail_to_start(const std::filesystem::path& importer,
                                 const std::filesystem::path& file, int reason) {
-  throw Error(ErrorCode::kFileUnreadable,
-              fmt::format("{}: ist-import at {} cannot be started: {}; install it again, or {}",
-                          file.string(), importer.string(), std::strerror(reason), kConvert));
+  throw_error(ErrorCode::kFileUnreadable,
+              "{}: ist-import at {} cannot be started: {}; install it again, or {}", file.string(),
+              importer.string(), std::strerror(reason), kConvert);
 }
 
 // A file descriptor above 2, which a program started here does not inherit. A host may have closed

@@ -1,12 +1,8 @@
 #include "ist/query/contacts/contact_reducer.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <array>
 
-#include "ist/base/error.h"
-#include "ist/tree/tree_parts.h"
+#include "ist/base/throw_error.h"
 
 namespace ist {
 namespace {
@@ -115,9 +111,8 @@ namespace {
 
 void require_in_range(const char* name, double value, double most) {
   if (value >= 0 && value <= most) return;  // no NaN
-  throw Error(
-      ErrorCode::kArgumentInvalid,
-      fmt::format("manifold option {} is {}: give a number from 0 to {}", name, value, most));
+  throw_error(ErrorCode::kArgumentInvalid, "manifold option {} is {}: give a number from 0 to {}",
+              name, value, most);
 }
 
 const SphereTree& with(const SphereTree& tree, SpherePolicy policy, const char* body) {

@@ -1,7 +1,6 @@
 #include "ist/query/pair_cache/pose_track.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <limits>
 
 namespace ist {

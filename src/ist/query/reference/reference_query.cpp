@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "ist/base/float_environment.h"
-#include "ist/base/pose.h"
 #include "ist/query/query_rules.h"
 #include "ist/query/relative_pose.h"
 #include "ist/tree/nested_bounds.h"

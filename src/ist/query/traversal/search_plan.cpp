@@ -1,11 +1,9 @@
 #include "ist/query/traversal/search_plan.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "ist/base/assert.h"
-#include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 #include "ist/query/query_rules.h"
 #include "ist/tree/tree_parts.h"
 #include "simd/lanes.h"
@@ -19,9 +17,9 @@ constexpr std::uint8_t kRootMask = 1;  // the root's parent has one child
 
 void require_addresses(const SphereTree& tree, const char* body) {
   if (tree.depth() == 0 || voxels_of(tree).octree.node_count(1) < kMostParents) return;
-  throw Error(ErrorCode::kMemoryLimit,
-              fmt::format("{}: a tree of {} leaves is too large to be searched: use larger voxels",
-                          body, tree.leaf_count()));
+  throw_error(ErrorCode::kMemoryLimit,
+              "{}: a tree of {} leaves is too large to be searched: use larger voxels", body,
+              tree.leaf_count());
 }
 
 // Returns the least float that is no less.

@@ -9,7 +9,6 @@
 #include "ist/mesh/clusters/triangle_clusters.h"
 #include "ist/query/traversal/budget_meter.h"
 #include "ist/query/triangles/triangle_distance.h"
-#include "ist/query/triangles/triangle_visitors.h"
 #include "ist/tree/tree_parts.h"
 #include "simd/triangles/cluster_step.h"
 

@@ -6,7 +6,6 @@
 #include <thread>
 
 #include "ist/base/float_environment.h"
-#include "ist/base/parallel.h"
 #include "ist/base/platform/pause.h"
 #include "ist/base/platform/timer_slack.h"
 #include "ist/query/workers/worker_schedule.h"

@@ -1,8 +1,6 @@
 #include "ist/query/world/broad_phase.h"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "ist/base/ordered_vector.h"
 #include "ist/query/relative_pose.h"

@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "ist/base/error.h"
 #include "ist/base/pose.h"
+#include "ist/base/throw_error.h"
 #include "ist/query/world/world_state.h"
 #include "ist/tree/mesh_source.h"
 #include "simd/dispatch.h"
@@ -50,8 +49,8 @@ BodyIndex World::add(const SphereTree& tree, const Eigen::Isometry3d& pose, std:
   const std::size_t index = s.bodies.size();
   if (name.empty()) name = fmt::format("body {}", index);
   if (index == kMostBodies) {
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("world: no room for '{}': {} bodies are the most", name, kMostBodies));
+    throw_error(ErrorCode::kArgumentInvalid, "world: no room for '{}': {} bodies are the most",
+                name, kMostBodies);
   }
   for (const detail::WorldState::Body& other : s.bodies) {
     const std::string reason =
@@ -60,9 +59,8 @@ BodyIndex World::add(const SphereTree& tree, const Eigen::Isometry3d& pose, std:
   }
   if (s.options.query.policy) tree.require(*s.options.query.policy, name);
   if (!body_pose(pose)) {
-    throw Error(
-        ErrorCode::kPoseInvalid,
-        fmt::format("world: the pose of '{}' is no rigid motion: {}", name, why_not_rigid(pose)));
+    throw_error(ErrorCode::kPoseInvalid, "world: the pose of '{}' is no rigid motion: {}", name,
+                why_not_rigid(pose));
   }
   if (index == s.bodies.capacity()) {
     s.broad.reserve(2 * index + 8);

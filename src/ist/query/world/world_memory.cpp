@@ -1,12 +1,12 @@
-#include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <utility>
 
 #include "ist/base/cancellation.h"
+#include "ist/base/counted.h"
 #include "ist/base/error.h"
+#include "ist/base/throw_error.h"
 #include "ist/query/contacts/contact_reducer.h"
 #include "ist/query/world/world_state.h"
 #include "ist/tree/tree_parts.h"
@@ -47,13 +47,12 @@ std::uint64_t WorldState::Answers::bytes_for(std::size_t room) noexcept {
 BodyPair WorldState::checked(BodyIndex a, BodyIndex b) const {
   for (const BodyIndex body : {a, b}) {
     if (is_there(body)) continue;
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("world: body {} is not there: {} bodies were added, from 0 on", body,
-                            bodies.size()));
+    throw_error(ErrorCode::kArgumentInvalid, "world: body {} is not there: {} added, from 0 on",
+                body, counted(bodies.size(), "body was", "bodies were"));
   }
   if (a == b) {
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("world: '{}' is no pair with itself: give two bodies", bodies[a].name));
+    throw_error(ErrorCode::kArgumentInvalid, "world: '{}' is no pair with itself: give two bodies",
+                bodies[a].name);
   }
   return {std::min(a, b), std::max(a, b)};
 }
@@ -63,9 +62,9 @@ std::vector<BodyPair> WorldState::checked(std::span<const BodyPair> pairs) const
   for (const auto& [a, b] : pairs) {
     const BodyPair pair = checked(a, b);
     if (table[pair] == PairTable::kIgnored) {
-      throw Error(ErrorCode::kArgumentInvalid,
-                  fmt::format("world: the pair of '{}' and '{}' is ignored: it cannot be prepared",
-                              bodies[pair.a].name, bodies[pair.b].name));
+      throw_error(ErrorCode::kArgumentInvalid,
+                  "world: the pair of '{}' and '{}' is ignored: it cannot be prepared",
+                  bodies[pair.a].name, bodies[pair.b].name);
     }
     in_order.push_back(pair);
   }
@@ -98,10 +97,10 @@ std::uint64_t WorldState::bytes_for(std::span<const BodyPair> pairs, std::uint64
   std::uint64_t sum = Answers::bytes_for(room);
   const auto megabytes = [](std::uint64_t bytes) { return static_cast<double>(bytes) / kMegabyte; };
   if (sum > limit) {
-    throw Error(ErrorCode::kMemoryLimit,
-                fmt::format("world: answers of up to {} pairs take {:.1f} MB, and max_memory is "
-                            "{:.1f} MB: lower most_near, or raise max_memory",
-                            room, megabytes(sum), megabytes(limit)));
+    throw_error(ErrorCode::kMemoryLimit,
+                "world: answers of up to {} pairs take {:.1f} MB, and max_memory is "
+                "{:.1f} MB: lower most_near, or raise max_memory",
+                room, megabytes(sum), megabytes(limit));
   }
   PairBytes bytes_of(options);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -110,12 +109,12 @@ std::uint64_t WorldState::bytes_for(std::span<const BodyPair> pairs, std::uint64
     const std::uint64_t bytes = bytes_of.of(a.tree, b.tree);
     sum += bytes;
     if (sum <= limit) continue;
-    throw Error(
-        ErrorCode::kMemoryLimit,
-        fmt::format("world: the pair of '{}' and '{}' takes {:.1f} MB, which with {} pairs before "
-                    "it makes {:.1f} MB, and max_memory is {:.1f} MB: prepare fewer pairs, ignore "
-                    "some, lower query.frontier_pairs or manifold.max_leaves, or raise max_memory",
-                    a.name, b.name, megabytes(bytes), k, megabytes(sum), megabytes(limit)));
+    throw_error(ErrorCode::kMemoryLimit,
+                "world: the pair of '{}' and '{}' takes {:.1f} MB, which with {} before "
+                "it makes {:.1f} MB, and max_memory is {:.1f} MB: prepare fewer pairs, ignore "
+                "some, lower query.frontier_pairs or manifold.max_leaves, or raise max_memory",
+                a.name, b.name, megabytes(bytes), counted(k, "pair"), megabytes(sum),
+                megabytes(limit));
   }
   return sum;
 }

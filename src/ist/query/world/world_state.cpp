@@ -1,6 +1,5 @@
 #include "ist/query/world/world_state.h"
 
-#include <algorithm>
 #include <cstring>
 
 #include "ist/base/pose.h"

@@ -1,13 +1,11 @@
 #include "loop/haptics/devices/hand_device.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "ist/base/error.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/throw_error.h"
 
 namespace ist {
 namespace {
@@ -17,9 +15,8 @@ constexpr int kFewestSteps = 16;        // a tick
 
 void check(const char* name, double value, double least, double most) {
   if (value >= least && value <= most) return;
-  throw Error(
-      ErrorCode::kArgumentInvalid,
-      fmt::format("HandSettings: {} is {}: give a number from {} to {}", name, value, least, most));
+  throw_error(ErrorCode::kArgumentInvalid, "HandSettings: {} is {}: give a number from {} to {}",
+              name, value, least, most);
 }
 
 HandSettings checked(HandSettings settings) {

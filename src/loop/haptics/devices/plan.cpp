@@ -8,6 +8,7 @@
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/pose.h"
+#include "ist/base/throw_error.h"
 
 namespace ist {
 
@@ -44,8 +45,8 @@ Plan::Plan(std::vector<Waypoint> waypoints) : waypoints_(std::move(waypoints)) {
   for (Waypoint& waypoint : waypoints_) {
     const std::string flaw = waypoint_flaw(before, waypoint);
     if (!flaw.empty()) {
-      throw Error(ErrorCode::kArgumentInvalid,
-                  fmt::format("plan: waypoint {} (from 0): {}", &waypoint - &waypoints_[0], flaw));
+      throw_error(ErrorCode::kArgumentInvalid, "plan: waypoint {} (from 0): {}",
+                  &waypoint - &waypoints_[0], flaw);
     }
     waypoint.pose = *Placement::from(waypoint.pose.isometry());
     if (before != nullptr) {

@@ -10,11 +10,11 @@
 #include <string_view>
 #include <utility>
 
-#include "ist/base/error.h"
 #include "ist/base/files.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/platform/from_chars.h"
 #include "ist/base/printable.h"
+#include "ist/base/throw_error.h"
 
 namespace ist {
 namespace {
@@ -108,8 +108,8 @@ class ScriptReader {
   }
 
   [[noreturn]] void fail(std::string_view what) const {
-    throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{}: line {}: {}", file_, std::max(line_, std::size_t{1}), what));
+    throw_error(ErrorCode::kInputInvalid, "{}: line {}: {}", file_, std::max(line_, std::size_t{1}),
+                what);
   }
 
   std::string_view text_;  // the rest of the text
@@ -136,15 +136,15 @@ void ScriptDevice::write(const Vector6& /*wrench*/, double dt) noexcept {
 std::vector<Waypoint> read_script(const std::filesystem::path& file, double metres) {
   const ScopedFloatEnvironment environment;
   if (!(std::isfinite(metres) && metres > 0)) {
-    throw Error(ErrorCode::kArgumentInvalid,
-                fmt::format("the unit of a script is {} m: give its length in metres", metres));
+    throw_error(ErrorCode::kArgumentInvalid,
+                "the unit of a script is {} m: give its length in metres", metres);
   }
   InputFile input(file);
   if (input.size() > kMostBytes) {
-    throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{}: it has {} bytes, more than {}: give fewer waypoints; the motion "
-                            "between them is interpolated",
-                            file.string(), input.size(), kMostBytes));
+    throw_error(ErrorCode::kInputInvalid,
+                "{}: it has {} bytes, more than {}: give fewer waypoints; the motion "
+                "between them is interpolated",
+                file.string(), input.size(), kMostBytes);
   }
   std::string text(input.size(), '\0');
   text.resize(input.read(text.data(), text.size()));

@@ -47,7 +47,9 @@ class DampingEffect final : public Effect {
     return {.normals = true, .velocity = true};
   }
   void respond(const EffectInput& input, const Vector6& motion,
-               Response& response) const noexcept override;
+               Response& response) const noexcept override {
+    brake(input.contacts, settings_.damping, input.dt, motion, response);
+  }
 
  private:
   DampingSettings settings_;

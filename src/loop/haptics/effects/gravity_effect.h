@@ -20,7 +20,10 @@ class GravityEffect final : public Effect {
   [[nodiscard]] std::string_view name() const noexcept override { return "gravity"; }
   [[nodiscard]] EffectNeeds needs() const noexcept override { return {}; }
   void respond(const EffectInput& input, const Vector6& motion,
-               Response& response) const noexcept override;
+               Response& response) const noexcept override {
+    const Eigen::Vector3d arm = input.tool.moved(motion).rotation * settings_.centre;
+    response.add(arm, settings_.mass * settings_.acceleration, Eigen::Matrix3d::Zero());
+  }
 
  private:
   GravitySettings settings_;

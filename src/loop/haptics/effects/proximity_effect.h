@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ist/haptics/effects/effect.h"
+#include "loop/haptics/effects/damping_effect.h"
 
 namespace ist {
 
@@ -24,7 +25,9 @@ class ProximityEffect final : public Effect {
     return {.velocity = true, .proximity = true};
   }
   void respond(const EffectInput& input, const Vector6& motion,
-               Response& response) const noexcept override;
+               Response& response) const noexcept override {
+    brake(input.proximity, settings_.damping, input.dt, motion, response);
+  }
 
  private:
   ProximitySettings settings_;

@@ -64,7 +64,7 @@ IST_C_API ist_status ist_mesh_create_float(const float* vertices, size_t vertex_
                                            ist_mesh** mesh) IST_NOEXCEPT;
 
 /** Reads an STL, PLY, OBJ, OFF or VTK PolyData file, or by the program ist-import a glTF, 3MF,
- * COLLADA or FBX file and others, and merges vertices with equal coordinates.
+ * COLLADA, FBX, X3D, AMF, 3DS, AC3D or LightWave file, and merges vertices with equal coordinates.
  * Errors: IST_FILE_UNREADABLE, IST_NOT_A_MESH and all IST_MESH_... codes; the message names the
  * file and the position in it; IST_CANCELLED. `progress` may be NULL. Cost: about 50 ms for
  * 100,000 triangles. */
