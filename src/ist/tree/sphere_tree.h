@@ -146,7 +146,7 @@ class IST_API SphereTree {
 /// The options of build_tree().
 struct BuildOptions {
   /// Edge of a voxel, mesh units; 0: the tree gets no voxels. Only leaf pairs and contacts need
-  /// them. A build without them takes a tenth of the time.
+  /// them. A build without them is faster.
   double voxel_size = 0;
   /// The tightest spheres to save, round voxels; implicit ones cost nothing.
   SpherePolicy spheres = SpherePolicy::kSlab;
