@@ -186,7 +186,8 @@ TEST(BuildTree, WhatBelongsToVoxelsNeedsAVoxelSize) {
     EXPECT_TRUE(refusal({.voxel_size = size}).starts_with("voxel-size-invalid")) << size;
   }
   EXPECT_TRUE(refusal({.max_memory = 1000}).starts_with("memory-limit"));
-  TriangleMesh point = test::coincident(3);
+  const Eigen::Vector3d at(1, 2, 3);
+  const TriangleMesh point = test::triangle(at, at, at);
   EXPECT_FALSE(can_build_tree(point, {}));
   EXPECT_EQ(test::error_name([&] { static_cast<void>(build_tree(point)); }), "mesh-extent");
 }

@@ -93,7 +93,7 @@ TEST(World, AnswersAsAQueryOfEachPair) {
 // All but leaf pairs and contacts, whether the bodies of a pair have voxels or not.
 TEST(World, AnswersWithoutVoxels) {
   Random random(4);
-  std::vector<PlacedTree> bodies = scattered(random, 8, 4);
+  std::vector<PlacedTree> bodies = scattered(random, 8, 1.5);
   World voxels = world_of(bodies);
   for (std::size_t i = 0; i < bodies.size(); i += 2) {
     bodies[i].tree = build_tree(*bodies[i].tree.triangles());
