@@ -53,12 +53,13 @@ nlohmann::ordered_json pose_json(const Eigen::Isometry3d& pose) {
   return std::vector<double>(pose.data(), pose.data() + 16);
 }
 
-ordered_json point_json(const std::optional<Eigen::Vector3d>& point) {
-  return point ? ordered_json{(*point)[0], (*point)[1], (*point)[2]} : ordered_json(nullptr);
+nlohmann::ordered_json point_json(const std::optional<Eigen::Vector3d>& point) {
+  return point ? nlohmann::ordered_json{(*point)[0], (*point)[1], (*point)[2]}
+               : nlohmann::ordered_json(nullptr);
 }
 
-ordered_json pair_json(const std::optional<TrianglePair>& pair) {
-  return pair ? ordered_json{pair->fixed, pair->moving} : ordered_json(nullptr);
+nlohmann::ordered_json pair_json(const std::optional<TrianglePair>& pair) {
+  return pair ? nlohmann::ordered_json{pair->fixed, pair->moving} : nlohmann::ordered_json(nullptr);
 }
 
 nlohmann::ordered_json header_line(const std::string& subcommand, const NamedSources& files) {
