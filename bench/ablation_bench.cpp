@@ -180,7 +180,7 @@ void report(benchmark::State& state, double voxel_size, const Parts& parts, std:
 // What the spheres of 2^16 nodes take, by a way to make one of a mask.
 void make_spheres(benchmark::State& state, double voxel_size, SphereOfMask make) {
   const std::vector<std::uint8_t> masks =
-      some_masks(parts_of(trees(voxel_size).first).octree, 1 << 16);
+      some_masks(voxels_of(trees(voxel_size).first).octree, 1 << 16);
   const auto begin = std::chrono::steady_clock::now();
   for (auto _ : state) {
     for (const std::uint8_t mask : masks) {

@@ -26,7 +26,7 @@ void build_upper_jaw(benchmark::State& state, double voxel_size, SpherePolicy po
     const SphereTree tree = build_tree(mesh, options, &report);
     for (const auto& stage : report.stages) stages[stage.name].push_back(stage.milliseconds);
     state.counters["leaves"] = tree.leaf_count();
-    state.counters["nodes"] = static_cast<double>(parts_of(tree).octree.node_count());
+    state.counters["nodes"] = static_cast<double>(voxels_of(tree).octree.node_count());
     state.counters["tree_MB"] = static_cast<double>(tree.bytes()) / 1e6;
   }
   state.counters["peak_MB"] = peak_memory_mb();

@@ -60,7 +60,7 @@ class PlainTest {
 void count(benchmark::State& state, double voxel_size, double dz) {
   const auto& [fixed, moving] = trees(voxel_size);
   const QuantizedPose pose =
-      quantize_pose(closing(dz), parts_of(fixed).lattice, parts_of(moving).lattice);
+      quantize_pose(closing(dz), voxels_of(fixed).lattice, voxels_of(moving).lattice);
   const PlainTest plain(pose, moving.voxel_size() / fixed.voxel_size());
   const auto model = [&](const HardwareNode& a, const HardwareNode& b) {
     return test_pair(test::node_pair(pose, a, b), pose.registers).hit;
@@ -100,7 +100,7 @@ void count(benchmark::State& state, double voxel_size, double dz) {
       misses == 0 ? 0 : static_cast<double>(false_hits) / static_cast<double>(misses);
   state.counters["word_bytes"] = 8;  // a mask and a first child
   state.counters["voxel_size"] = voxel_size;
-  tell("nodes", parts_of(fixed).octree.node_count() + parts_of(moving).octree.node_count());
+  tell("nodes", voxels_of(fixed).octree.node_count() + voxels_of(moving).octree.node_count());
   state.SetLabel(pair_name());
 }
 

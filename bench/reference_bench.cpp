@@ -26,8 +26,8 @@ void leaf_pairs(benchmark::State& state, double voxel_size, SpherePolicy policy,
       tests, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   if (source == SphereSource::kSaved) {
     state.counters["saved_MB"] = static_cast<double>(sizeof(Ball)) / 1e6 *
-                                 static_cast<double>(parts_of(fixed).octree.node_count() +
-                                                     parts_of(moving).octree.node_count());
+                                 static_cast<double>(voxels_of(fixed).octree.node_count() +
+                                                     voxels_of(moving).octree.node_count());
   }
   state.SetLabel(pair_name());
 }

@@ -11,7 +11,7 @@ static int succeeds(ist_status status) {
 /* Makes a built-in jaw ready for queries. Returns NULL after an error. */
 static ist_tree* jaw_tree(int32_t jaw) {
   /* A member that is zero means its default. Lengths are in the unit of the mesh, here mm. */
-  const ist_build_options options = {.struct_size = sizeof options, .voxel_size = 0.4};
+  const ist_build_options options = {.struct_size = sizeof options};
   ist_mesh* mesh = NULL;
   ist_tree* tree = NULL;
   /* ist_mesh_read("scan.stl", NULL, &mesh) reads a mesh of your own. */

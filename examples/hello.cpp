@@ -11,8 +11,8 @@ int main() try {
   const ist::TriangleMesh lower_mesh = ist::make_jaw(ist::Jaw::kLower, 1);
 
   // A tree is a mesh made ready for queries. Lengths are in the unit of the mesh, here mm.
-  const ist::SphereTree upper = ist::build_tree(upper_mesh, {.voxel_size = 0.4});
-  const ist::SphereTree lower = ist::build_tree(lower_mesh, {.voxel_size = 0.4});
+  const ist::SphereTree upper = ist::build_tree(upper_mesh);
+  const ist::SphereTree lower = ist::build_tree(lower_mesh);
 
   // A query belongs to one thread. Several queries may share a tree.
   ist::Query query(upper, lower);

@@ -6,12 +6,12 @@ import ist
 import numpy as np
 
 try:
-    # ist.jaws() makes two built-in jaws. ist.build("scan.stl", 0.4) reads a mesh of your own.
+    # ist.jaws() makes two built-in jaws. ist.build("scan.stl") reads a mesh of your own.
     upper_mesh, lower_mesh = ist.jaws(seed=1)
 
     # A tree is a mesh made ready for queries. Lengths are in the unit of the mesh, here mm.
-    upper = ist.build(upper_mesh, voxel_size=0.4)
-    lower = ist.build(lower_mesh, voxel_size=0.4)
+    upper = ist.build(upper_mesh)
+    lower = ist.build(lower_mesh)
 
     # A query belongs to one thread. Several queries may share a tree.
     query = ist.Query(upper, lower)

@@ -24,12 +24,10 @@ void print_pairs_that_touch(ist::World& world) {
 
 int main() try {
   // A gate: a post stands on a plate, and a bar lies on the post. A ball lies on the plate.
-  const ist::BuildOptions options{.voxel_size = 1};
-  const ist::SphereTree plate =
-      ist::build_tree(ist::make_box({-30, -30, -2}, {30, 30, 0}), options);
-  const ist::SphereTree post = ist::build_tree(ist::make_cylinder(16, 3, 20), options);
-  const ist::SphereTree bar = ist::build_tree(ist::make_box({-20, -1, -1}, {20, 1, 1}), options);
-  const ist::SphereTree ball = ist::build_tree(ist::make_icosphere(4, 5), options);
+  const ist::SphereTree plate = ist::build_tree(ist::make_box({-30, -30, -2}, {30, 30, 0}));
+  const ist::SphereTree post = ist::build_tree(ist::make_cylinder(16, 3, 20));
+  const ist::SphereTree bar = ist::build_tree(ist::make_box({-20, -1, -1}, {20, 1, 1}));
+  const ist::SphereTree ball = ist::build_tree(ist::make_icosphere(4, 5));
 
   // The pose of a body maps its mesh to the world. Each body overlaps its support by 0.1.
   ist::World world;

@@ -57,8 +57,8 @@ Answer ask(Measured& measured, std::size_t pose) {
 
 Comparison::Comparison(double voxel_size, const std::vector<Parts>& parts)
     : bodies_{trees(voxel_size).first, trees(voxel_size).second,
-              PointerTree(parts_of(trees(voxel_size).first).octree),
-              PointerTree(parts_of(trees(voxel_size).second).octree)},
+              PointerTree(voxels_of(trees(voxel_size).first).octree),
+              PointerTree(voxels_of(trees(voxel_size).second).octree)},
       leaf_pairs_(kContacts) {
   for (const Parts& one : parts) {
     const bool known = std::any_of(measured_.begin(), measured_.end(),

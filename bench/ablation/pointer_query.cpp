@@ -68,10 +68,10 @@ class PointerDescent {
                             int slot) const {
     Visit visit;
     visit.node = &node;
-    visit.ball = is_implicit(policy_) ? implicit_ball(policy_, parts_of(tree).lattice, node.level,
+    visit.ball = is_implicit(policy_) ? implicit_ball(policy_, voxels_of(tree).lattice, node.level,
                                                       node.cube_centre, node.mask)
-                                      : parts_of(tree).saved_ball(node.level, parent, slot);
-    if constexpr (kSlabs) visit.slab = parts_of(tree).saved_slab(node.level, parent, slot);
+                                      : voxels_of(tree).saved_ball(node.level, parent, slot);
+    if constexpr (kSlabs) visit.slab = voxels_of(tree).saved_slab(node.level, parent, slot);
     return visit;
   }
 
@@ -112,8 +112,8 @@ class PointerDescent {
       found_.push_back({a.node->index, b.node->index});
       return;
     }
-    const double edge_a = parts_of(fixed_.tree).lattice.edge(a.node->level);
-    const double edge_b = parts_of(moving_.tree).lattice.edge(b.node->level);
+    const double edge_a = voxels_of(fixed_.tree).lattice.edge(a.node->level);
+    const double edge_b = voxels_of(moving_.tree).lattice.edge(b.node->level);
     Children of_a, of_b;
     if (descends(a.node->level, edge_a, b.node->level, edge_b)) {
       open(fixed_.tree, *a.node, of_a);
@@ -173,7 +173,7 @@ std::unique_ptr<PointerNode> PointerTree::make(const LinearOctree& octree, int l
 QueryResult PointerQuery::leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out) {
   const ScopedFloatEnvironment environment;
   const std::optional<RelativePose> relative =
-      relative_pose(pose, parts_of(fixed_.tree).lattice, parts_of(moving_.tree).lattice);
+      relative_pose(pose, parts_of(fixed_.tree).origin, parts_of(moving_.tree).origin);
   if (!relative) {
     QueryResult result;
     result.status = QueryStatus::kInvalidPose;

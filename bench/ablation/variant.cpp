@@ -17,8 +17,8 @@ using Search = Parts::Search;
 std::size_t saved_bytes(const SphereTree& tree, SpherePolicy policy) {
   std::size_t bytes = 0;
   for (int level = 0; level <= tree.depth(); ++level) {
-    if (!is_implicit(policy)) bytes += parts_of(tree).balls(level).size_bytes();
-    if (policy == SpherePolicy::kSlab) bytes += parts_of(tree).slabs(level).size_bytes();
+    if (!is_implicit(policy)) bytes += voxels_of(tree).balls(level).size_bytes();
+    if (policy == SpherePolicy::kSlab) bytes += voxels_of(tree).slabs(level).size_bytes();
   }
   return bytes;
 }
@@ -41,7 +41,7 @@ Variant::Variant(const Bodies& bodies, const Parts& parts)
                                           parts.policy));
     return;
   }
-  tree_bytes_ += parts_of(bodies.fixed).octree.bytes() + parts_of(bodies.moving).octree.bytes();
+  tree_bytes_ += voxels_of(bodies.fixed).octree.bytes() + voxels_of(bodies.moving).octree.bytes();
   if (parts.search == Search::kLinear) {
     bytes_for_a_leaf_pair_ = 2 * sizeof(LeafPair);
     ask_by(std::make_shared<ReferenceQuery>(bodies.fixed, bodies.moving, parts.policy));

@@ -47,7 +47,7 @@ const std::vector<ChunkState>& verdicts() {
 class Leaves {
  public:
   Leaves(const SphereTree& tree, const Pose* move)
-      : tree_(tree), codes_(parts_of(tree).octree.codes(0)), move_(move) {}
+      : tree_(tree), codes_(voxels_of(tree).octree.codes(0)), move_(move) {}
 
   const std::vector<ClippedTriangle>& of(std::uint32_t leaf) {
     const auto [at, is_new] = made_.try_emplace(leaf);
@@ -77,7 +77,7 @@ class Leaves {
 std::uint64_t crossing(const SphereTree& fixed, const SphereTree& moving, const Pose& pose,
                        const std::vector<LeafPair>& leaf_pairs) {
   const auto [motion, error] =
-      frame_motion(pose, parts_of(fixed).lattice, parts_of(moving).lattice);
+      frame_motion(pose, voxels_of(fixed).lattice, voxels_of(moving).lattice);
   const double lengths =
       fixed.bounding_radius() + moving.bounding_radius() + motion.translation().norm();
   const double tolerance = AnswerVerifier::kTolerance * lengths + error;

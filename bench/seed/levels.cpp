@@ -23,18 +23,19 @@ double sum_of_spheres(const SphereTree& tree, SpherePolicy policy, int level,
   double sum = 0;
   if (is_implicit(policy)) {
     for (std::uint32_t node = 0; node < centres.size(); ++node) {
-      const Ball ball = parts_of(tree).ball(policy, level, node, centres[node]);
+      const Ball ball = voxels_of(tree).ball(policy, level, node, centres[node]);
       sum += ball.centre.sum() + ball.radius;
     }
     return sum;
   }
-  const auto parents = static_cast<std::uint32_t>(parts_of(tree).balls(level).size());
+  const auto parents = static_cast<std::uint32_t>(voxels_of(tree).balls(level).size());
   for (std::uint32_t parent = 0; parent < parents; ++parent) {
-    const int children = parts_of(tree).octree.child_count(level + 1, parent);
+    const int children = voxels_of(tree).octree.child_count(level + 1, parent);
     for (int slot = 0; slot < children; ++slot) {
-      const Ball ball = parts_of(tree).saved_ball(level, parent, slot);
+      const Ball ball = voxels_of(tree).saved_ball(level, parent, slot);
       sum += ball.centre.sum() + ball.radius;
-      if (policy == SpherePolicy::kSlab) sum += parts_of(tree).saved_slab(level, parent, slot).half;
+      if (policy == SpherePolicy::kSlab)
+        sum += voxels_of(tree).saved_slab(level, parent, slot).half;
     }
   }
   return sum;
@@ -52,7 +53,7 @@ class Level {
       if (times_.empty()) measure();
       state.SetIterationTime(1e-6 * times_[at].quantile(0));
     }
-    state.counters["nodes"] = parts_of(trees(voxel_size_).second).octree.node_count(level_);
+    state.counters["nodes"] = voxels_of(trees(voxel_size_).second).octree.node_count(level_);
     state.counters["volume"] = volumes_[at];
     state.counters["leaf_balls"] = volumes_[at] / unit_ball_volume(voxel_size_);
     state.counters["make_us"] = times_[at].quantile(0);
@@ -64,8 +65,8 @@ class Level {
   void measure() {
     const SphereTree& tree = trees(voxel_size_).second;
     std::vector<Eigen::Vector3d> centres;
-    for (const std::uint64_t code : parts_of(tree).octree.codes(level_)) {
-      centres.push_back(cube_centre(parts_of(tree).lattice, level_, code));
+    for (const std::uint64_t code : voxels_of(tree).octree.codes(level_)) {
+      centres.push_back(cube_centre(voxels_of(tree).lattice, level_, code));
     }
     const LevelStatistics statistics = level_statistics(tree)[static_cast<std::size_t>(level_)];
     for (const LevelSpheres& spheres : statistics.spheres) volumes_.push_back(spheres.volume);

@@ -175,13 +175,13 @@ void add_saved(double voxel_size) {
       rounds(31),
       [=](benchmark::State& state, const QueryResult&) {
         const auto& [fixed, moving] = trees(voxel_size);
-        const auto nodes = static_cast<double>(parts_of(fixed).octree.node_count() +
-                                               parts_of(moving).octree.node_count());
+        const auto nodes = static_cast<double>(voxels_of(fixed).octree.node_count() +
+                                               voxels_of(moving).octree.node_count());
         state.counters["ball_bytes"] = sizeof(Ball);
         state.counters["saved_MB"] = sizeof(Ball) * nodes / 1e6;
-        state.counters["octree_MB"] =
-            static_cast<double>(parts_of(fixed).octree.bytes() + parts_of(moving).octree.bytes()) /
-            1e6;
+        state.counters["octree_MB"] = static_cast<double>(voxels_of(fixed).octree.bytes() +
+                                                          voxels_of(moving).octree.bytes()) /
+                                      1e6;
       });
 }
 

@@ -32,8 +32,8 @@ void voxels(benchmark::State& state, double voxel_size) {
       if (stage.name == std::string("octree")) octree_times.add(1e3 * stage.milliseconds);
     }
     state.counters["leaves"] = tree.leaf_count();
-    state.counters["nodes"] = static_cast<double>(parts_of(tree).octree.node_count());
-    state.counters["cells"] = parts_of(tree).lattice.cells;
+    state.counters["nodes"] = static_cast<double>(voxels_of(tree).octree.node_count());
+    state.counters["cells"] = voxels_of(tree).lattice.cells;
     state.counters["depth"] = tree.depth();
     state.counters["MB"] = static_cast<double>(tree.bytes()) / 1e6;
   }

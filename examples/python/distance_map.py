@@ -24,11 +24,6 @@ except ImportError as missing:
 BEYOND = "#d8d4ca"  # colour of all that is farther away than the reach
 
 
-def tree_of(mesh):
-    """Distances do not depend on voxels, so few large ones do."""
-    return ist.build(mesh, voxel_size=np.ptp(mesh[0], axis=0).max() / 100)
-
-
 def facing(tree, axis, side):
     """The triangles that face along an axis (0, 1 or 2; side is 1 or -1), from the farthest to the nearest for an eye
     there, and the corners as that eye sees them, (n, 3, 2)."""
@@ -78,7 +73,7 @@ def main():
     try:
         pose[:3, 3] = [float(number) for number in arguments.move.split(",")]
         meshes = [ist.read_mesh(file) for file in arguments.meshes] or ist.jaws()
-        upper, lower = map(tree_of, meshes)
+        upper, lower = map(ist.build, meshes)
         draw(upper, lower, pose, arguments.reach, "xyz".index(arguments.axis)).savefig(arguments.picture)
     except (ValueError, ist.Error, OSError) as wrong:
         sys.exit(f"distance_map: {wrong}")

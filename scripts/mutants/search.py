@@ -12,7 +12,8 @@ LEAF_PAIRS = f"""                              const Budget& budget) noexcept {{
 {ENVIRONMENT}  detail::QueryState& s = *state_;
   const detail::Use use(s);
   if (!use) return {{.status = QueryStatus::kBusy, .complete = false}};
-  LeafPairSink sink(s.plan, s.kernels, out);"""
+  if (!s.has_leaves()) return {{.status = QueryStatus::kNoVoxels, .complete = false}};
+  LeafPairSink sink(*s.plan, s.kernels, out);"""
 RESOLUTIONS = ["query_test Engines/Resolution*:ResolutionOfContacts*"]
 
 MUTANTS = [
@@ -162,8 +163,8 @@ MUTANTS = [
     ("table-not-nested", "the balls that a search tests are the published ones", [("implicit_ball.h",
      "half * kTableRadii[radius_code] + leaf_excess(level, radius_code)", "half * kTableRadii[radius_code] + 0 * leaf_excess(level, radius_code)")],
      ["tree_test NestedBall*", "search_test *ImplicitPolicies*"]),
-    ("root-not-nested", "the roots are tested in double with the published balls", [("root_test.cpp", "parts_of(tree).nested_ball(",
-     "parts_of(tree).ball(")], ["search_test *ImplicitPolicies*"]),
+    ("root-not-nested", "the roots are tested in double with the published balls", [("root_test.cpp", "voxels_of(tree).nested_ball(",
+     "voxels_of(tree).ball(")], ["search_test *ImplicitPolicies*"]),
     ("ball-rounded-down", "a saved radius is rounded down", [("node_bounds.cpp", "std::ceil(radius / (PackedBall::kUnit * parent_edge))",
      "std::max(1.0, std::floor(radius / (PackedBall::kUnit * parent_edge)))")], ["tree_test"]),
     ("slab-rounded-down", "a saved half-width is rounded down", [("node_bounds.cpp", "std::ceil((half + pad) / unit)",

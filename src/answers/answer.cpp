@@ -17,13 +17,17 @@ ordered_json or_null(const std::optional<Number>& number) {
 
 }  // namespace
 
-ordered_json answer_line(std::size_t index, const PoseAnswer& answer, const Engine& engine,
-                         const EngineAnswer& timed, const Bodies& bodies) {
+ordered_json answer_line(std::size_t index, const PoseAnswer& answer,
+                         const std::optional<LeafAnswer>& leaves, const Bodies& bodies) {
   const Findings& found = answer.findings;
-  const QueryResult& result = timed.result;
-  const bool have_voxels = bodies.have_voxels();
-  const auto of_voxels = [have_voxels](const ordered_json& value) {
-    return have_voxels ? value : ordered_json(nullptr);
+  const auto of_engine = [&](const auto& value) {
+    return leaves ? ordered_json(value(leaves->engine)) : ordered_json(nullptr);
+  };
+  const auto of_result = [&](auto QueryResult::*member) {
+    return leaves ? ordered_json(leaves->timed.result.*member) : ordered_json(nullptr);
+  };
+  const auto time = [&](double (EngineAnswer::*of)() const) {
+    return leaves ? ordered_json((leaves->timed.*of)()) : ordered_json(nullptr);
   };
   const auto lower = [](const std::optional<DistanceInterval>& interval) {
     return interval ? ordered_json(interval->lower) : ordered_json(nullptr);
@@ -35,18 +39,18 @@ ordered_json answer_line(std::size_t index, const PoseAnswer& answer, const Engi
                     {"pose", pose_json(answer.pose)},
                     {"rotation_error", answer.findings.rotation_error}};
   if (answer.displacement) line["displacement"] = *answer.displacement;
-  line["engine"] = of_voxels(engine.name());
-  line["spheres"] = of_voxels(to_string(bodies.policy));
-  line["target"] = of_voxels(engine.target());
-  line["workers"] = of_voxels(engine.workers());
-  line["voxel_size"] = {or_null(bodies.fixed_voxel_size), or_null(bodies.moving_voxel_size)};
-  line["resolution"] = of_voxels(result.resolution);
-  line["complete"] = of_voxels(result.complete);
-  line["truncated"] = of_voxels(result.truncated);
-  line["level"] = of_voxels(result.level);
+  line["engine"] = of_engine([](const Engine& e) { return e.name(); });
+  line["spheres"] = of_engine([&](const Engine&) { return to_string(bodies.policy); });
+  line["target"] = of_engine([](const Engine& e) { return e.target(); });
+  line["workers"] = of_engine([](const Engine& e) { return e.workers(); });
+  line["voxel_size"] = {voxel_size_json(bodies.fixed), voxel_size_json(bodies.moving)};
+  line["resolution"] = of_result(&QueryResult::resolution);
+  line["complete"] = of_result(&QueryResult::complete);
+  line["truncated"] = of_result(&QueryResult::truncated);
+  line["level"] = of_result(&QueryResult::level);
   line["touch"] = to_string(found.touch);
   line["inside"] = found.inside ? ordered_json(to_string(*found.inside)) : ordered_json(nullptr);
-  line["leaf_pairs"] = of_voxels(result.leaf_pairs);
+  line["leaf_pairs"] = of_result(&QueryResult::leaf_pairs);
   line["triangle_pairs"] = or_null(found.triangle_pairs);
   line["distance_lower"] = lower(found.distance);
   line["distance_upper"] = upper(found.distance);
@@ -68,9 +72,9 @@ ordered_json answer_line(std::size_t index, const PoseAnswer& answer, const Engi
   line["contacts"] = or_null(found.contacts);
   line["contact_depth"] = or_null(found.contact_depth);
   line["area"] = or_null(found.depth.area);
-  line["sphere_tests"] = of_voxels(result.sphere_tests);
-  line["microseconds_min"] = of_voxels(timed.fastest());
-  line["microseconds_median"] = of_voxels(timed.median());
+  line["sphere_tests"] = of_result(&QueryResult::sphere_tests);
+  line["microseconds_min"] = time(&EngineAnswer::fastest);
+  line["microseconds_median"] = time(&EngineAnswer::median);
   line["notes"] = found.notes;
   return line;
 }

@@ -29,10 +29,16 @@ struct PoseAnswer {
   std::vector<EngineAnswer> engines;  ///< one for each engine
 };
 
-/// Returns an engine's answer at the pose of number `index` as the JSON of `ist collide`, whose
-/// keys stand in docs/command.md.
+/// An answer about leaf pairs, and the engine that gave it.
+struct LeafAnswer {
+  const Engine& engine;
+  const EngineAnswer& timed;
+};
+
+/// Returns the answer at the pose of number `index` as the JSON of `ist collide`, whose keys stand
+/// in docs/command.md. Without voxels there are no leaf pairs, and their keys are null.
 [[nodiscard]] nlohmann::ordered_json answer_line(std::size_t index, const PoseAnswer& answer,
-                                                 const Engine& engine, const EngineAnswer& timed,
+                                                 const std::optional<LeafAnswer>& leaves,
                                                  const Bodies& bodies);
 
 }  // namespace ist::answers

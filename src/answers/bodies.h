@@ -12,9 +12,7 @@ namespace ist::answers {
 /// The two trees of a query, and the sphere policy that it uses.
 struct Bodies {
   SphereTree fixed, moving;
-  SpherePolicy policy;
-  /// Mesh units. Empty for a mesh without voxels, whose tree has one voxel as large as the mesh.
-  std::optional<double> fixed_voxel_size{}, moving_voxel_size{};
+  SpherePolicy policy;                          ///< means nothing if a body lacks voxels
   LengthUnit told_unit = LengthUnit::kUnknown;  ///< by the user, for trees without a unit
   double moving_factor = 1;                     ///< that converted the lengths of the moving mesh
   /// How messages call the bodies: by the names of their files, if there are any.
@@ -23,7 +21,11 @@ struct Bodies {
   bool fixed_has_border = false, moving_has_border = false;
 
   /// Returns whether both bodies have voxels: leaf pairs and contacts are answers about voxels.
-  [[nodiscard]] bool have_voxels() const { return fixed_voxel_size && moving_voxel_size; }
+  [[nodiscard]] bool have_voxels() const { return fixed.has_voxels() && moving.has_voxels(); }
+  /// Returns the policy of a query; nothing if a body lacks voxels.
+  [[nodiscard]] std::optional<SpherePolicy> query_policy() const {
+    return have_voxels() ? std::optional(policy) : std::nullopt;
+  }
   /// Returns the largest extent of the smaller body. Cost: as of box_of().
   [[nodiscard]] double extent() const;
   /// Returns the unit of a body's lengths. It is the other's too, because load_bodies() converts or

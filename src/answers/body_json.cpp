@@ -67,15 +67,21 @@ ordered_json tree_json(const std::string& file, const SphereTree& tree,
   ordered_json line{
       {"file", file},
       {"kind", "tree"},
-      {"voxel_size", tree.voxel_size()},
-      {"cells", parts_of(tree).lattice.cells},
-      {"depth", tree.depth()},
-      {"voxels", tree.leaf_count()},
-      {"nodes", parts_of(tree).octree.node_count()},
+      {"voxel_size", voxel_size_json(tree)},
+      {"cells", nullptr},
+      {"depth", nullptr},
+      {"voxels", nullptr},
+      {"nodes", nullptr},
       {"memory", tree.bytes()},
       {"orientation", tree.orientation() == Orientation::kOutward ? "outward" : "assumed"},
       {"triangles", tree.triangles() != nullptr},
       {"proximity", tree.has_proximity()}};
+  if (tree.has_voxels()) {
+    line["cells"] = voxels_of(tree).lattice.cells;
+    line["depth"] = tree.depth();
+    line["voxels"] = tree.leaf_count();
+    line["nodes"] = voxels_of(tree).octree.node_count();
+  }
   for (const char* key : {"self_intersections", "self_intersections_complete"}) line[key] = nullptr;
   if (triangles) {
     line["self_intersections"] = triangles->self_intersections;

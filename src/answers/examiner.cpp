@@ -50,15 +50,14 @@ Meeting Findings::meeting() const {
 Examiner::Examiner(const Bodies& bodies, const Questions& questions, const std::string& target)
     : bodies_(bodies),
       questions_(questions),
-      have_voxels_(bodies.have_voxels()),
       budget_{questions.max_tests.value_or(Budget().tests)},
       distance_tolerance_(questions.distance.value_or(kDefaultTolerance * bodies.extent())),
       depth_tolerance_(questions.depth.value_or(kDefaultTolerance * bodies.extent())),
-      query_(bodies.fixed, bodies.moving, {.policy = bodies.policy, .target = target}),
-      manifold_(bodies.fixed, bodies.moving, bodies.policy),
+      query_(bodies.fixed, bodies.moving, {.policy = bodies.query_policy(), .target = target}),
       open_fixed_(open_box(bodies.fixed, query_.has_triangles())),
       open_moving_(open_box(bodies.moving, query_.has_triangles())) {
   if (questions.triangle_pairs || questions.depth) require_triangles(bodies);
+  if (bodies.have_voxels()) manifold_.emplace(bodies.fixed, bodies.moving, bodies.policy);
   depth_.emplace(query_, bodies, depth_tolerance_);
   if (query_.has_triangles()) {
     inside_.emplace(*bodies.fixed.triangles(), *bodies.moving.triangles());
@@ -171,11 +170,11 @@ void Examiner::find_self_intersections(Findings& found) const {
 }
 
 void Examiner::find_contacts(const Eigen::Isometry3d& pose, Findings& found) {
-  if (!have_voxels_) return;
-  const QueryResult result = query_.contacts(pose, manifold_, budget_);
+  if (!manifold_) return;
+  const QueryResult result = query_.contacts(pose, *manifold_, budget_);
   if (!result.complete) return;
-  found.contacts = manifold_.points().size();
-  for (const Contact& contact : manifold_.points()) {
+  found.contacts = manifold_->points().size();
+  for (const Contact& contact : manifold_->points()) {
     found.contact_depth = std::max(found.contact_depth.value_or(contact.depth), contact.depth);
   }
 }

@@ -75,11 +75,10 @@ class Examiner {
 
   const Bodies& bodies_;
   Questions questions_;
-  bool have_voxels_;
   Budget budget_;
   double distance_tolerance_, depth_tolerance_;
   Query query_;
-  ContactManifold manifold_;
+  std::optional<ContactManifold> manifold_;       // with voxels
   std::optional<InsideTest> inside_;              // with triangles
   Eigen::AlignedBox3d open_fixed_, open_moving_;  // of a body without a certain inside, else empty
   std::optional<DepthMeter> depth_;

@@ -44,16 +44,22 @@ nlohmann::ordered_json json_of(PatientFrame frame) {
   return std::string(to_string(frame));
 }
 
+nlohmann::ordered_json voxel_size_json(const SphereTree& tree) {
+  if (!tree.has_voxels()) return nullptr;
+  return tree.voxel_size();
+}
+
 nlohmann::ordered_json pose_json(const Eigen::Isometry3d& pose) {
   return std::vector<double>(pose.data(), pose.data() + 16);
 }
 
-ordered_json point_json(const std::optional<Eigen::Vector3d>& point) {
-  return point ? ordered_json{(*point)[0], (*point)[1], (*point)[2]} : ordered_json(nullptr);
+nlohmann::ordered_json point_json(const std::optional<Eigen::Vector3d>& point) {
+  return point ? nlohmann::ordered_json{(*point)[0], (*point)[1], (*point)[2]}
+               : nlohmann::ordered_json(nullptr);
 }
 
-ordered_json pair_json(const std::optional<TrianglePair>& pair) {
-  return pair ? ordered_json{pair->fixed, pair->moving} : ordered_json(nullptr);
+nlohmann::ordered_json pair_json(const std::optional<TrianglePair>& pair) {
+  return pair ? nlohmann::ordered_json{pair->fixed, pair->moving} : nlohmann::ordered_json(nullptr);
 }
 
 nlohmann::ordered_json header_line(const std::string& subcommand, const NamedSources& files) {
@@ -68,14 +74,11 @@ nlohmann::ordered_json header_line(const std::string& subcommand, const NamedSou
 
 nlohmann::ordered_json header_line(const std::string& subcommand, const NamedSources& files,
                                    const Bodies& bodies, const std::optional<TakenUnit>& unit) {
-  const auto or_null = [](const std::optional<double>& size) {
-    return size ? nlohmann::ordered_json(*size) : nlohmann::ordered_json(nullptr);
-  };
   nlohmann::ordered_json line = header_line(subcommand, files);
   line["unit"] = unit ? nlohmann::ordered_json(unit->name) : json_of(bodies.unit());
   if (unit) line["unit_assumed"] = unit->assumed;
   line["frame"] = json_of(bodies.frame());
-  line["voxel_size"] = {or_null(bodies.fixed_voxel_size), or_null(bodies.moving_voxel_size)};
+  line["voxel_size"] = {voxel_size_json(bodies.fixed), voxel_size_json(bodies.moving)};
   return line;
 }
 

@@ -31,6 +31,9 @@ namespace ist::answers {
 /// Returns the frame's name, or null if it is unknown.
 [[nodiscard]] nlohmann::ordered_json json_of(PatientFrame frame);
 
+/// Returns the voxel size of a tree, or null if it lacks voxels.
+[[nodiscard]] nlohmann::ordered_json voxel_size_json(const SphereTree& tree);
+
 /// Returns the 16 numbers of a pose, column by column.
 [[nodiscard]] nlohmann::ordered_json pose_json(const Eigen::Isometry3d& pose);
 

@@ -147,8 +147,7 @@ ist_status ist_query_contacts(ist_query* query, const double pose[16], const ist
     call.need_array("contacts", contacts, capacity);
     const ist::Budget allowed = read_budget(call, budget);
     const Held<QueryObject> held(call, "query", query);
-    if (!held) return;
-    if (!held->manifold) return not_prepared(call);
+    if (!held || !gives_contacts(call, *held)) return;
     const ist::QueryResult found =
         held->query.contacts(to_isometry(pose), *held->manifold, allowed);
     if (!answered(call, found.status, pose)) return;

@@ -46,7 +46,7 @@ ist_query_info query_info_of(const QueryObject& query) {
   ist_query_info info{};
   info.bytes = query.query.bytes() + (query.manifold ? query.manifold->bytes() : 0);
   info.contacts = query.max_contacts;
-  info.spheres = spheres_of(query.query.policy());
+  info.spheres = spheres_of(query.query.policy(), query.has_voxels());
   info.workers = query.query.workers();
   info.has_triangles = query.query.has_triangles();
   std::strncpy(info.target, query.query.target(), sizeof(info.target) - 1);

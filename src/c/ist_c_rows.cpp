@@ -78,7 +78,7 @@ ist_status ist_query_rows(ist_query* query, const double* poses, size_t count,
     const RowsAsked asked = read_rows_options(call, options);
     const Held<QueryObject> held(call, "query", query);
     if (!held) return;
-    if (asked.questions.contacts && !held->manifold) return not_prepared(call);
+    if (asked.questions.contacts && !gives_contacts(call, *held)) return;
     std::vector<Eigen::Isometry3d> at(count);
     for (std::size_t i = 0; i < count; ++i) at[i] = to_isometry(poses + 16 * i);
     ist::QueryOptions further = held->query_options;

@@ -45,8 +45,10 @@ BuildOptions read_build_options(Call& call, const ist_build_options& known) {
 
 // The stages that a build begins.
 unsigned stages_of(const BuildOptions& options) {
-  constexpr unsigned kAlways = 5;
-  return kAlways + (is_implicit(options.spheres) ? 0U : 1U) + (options.proximity ? 1U : 0U);
+  constexpr unsigned kAlways = 1, kOfVoxels = 4;
+  if (options.voxel_size == 0) return kAlways;
+  return kAlways + kOfVoxels + (is_implicit(options.spheres) ? 0U : 1U) +
+         (options.proximity ? 1U : 0U);
 }
 
 ist_tree_info tree_info_of(const Tree& object) {
@@ -57,7 +59,7 @@ ist_tree_info tree_info_of(const Tree& object) {
   info.triangles = tree.triangles() ? tree.triangles()->triangles.size() : 0;
   info.bytes = tree.bytes();
   info.depth = tree.depth();
-  info.spheres = spheres_of(tree.tightest());
+  info.spheres = spheres_of(tree.tightest(), tree.has_voxels());
   info.has_triangles = tree.triangles() != nullptr;
   info.has_proximity = tree.has_proximity();
   info.outward = tree.orientation() == Orientation::kOutward;

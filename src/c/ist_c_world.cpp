@@ -59,6 +59,8 @@ ist_status status_of_pair(QueryStatus status) {
       return IST_POSE_INVALID;
     case QueryStatus::kNoTriangles:
       return IST_TRIANGLES_MISSING;
+    case QueryStatus::kNoVoxels:
+      return IST_VOXELS_MISSING;
     default:
       return IST_NOT_PREPARED;
   }

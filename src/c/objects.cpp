@@ -69,9 +69,12 @@ void check_threads(Call& call, const char* name, std::int32_t threads) {
             threads, kMost);
 }
 
-void not_prepared(Call& call) {
+bool gives_contacts(Call& call, const QueryObject& query) {
+  if (!query.has_voxels()) return answered(call, QueryStatus::kNoVoxels);
+  if (query.manifold) return true;
   call.fail(IST_NOT_PREPARED,
             "the query was created without contacts: create it with a number of them");
+  return false;
 }
 
 bool answered(Call& call, QueryStatus status, const double* pose) {
@@ -85,6 +88,11 @@ bool answered(Call& call, QueryStatus status, const double* pose) {
       return false;
     case QueryStatus::kNoTriangles:
       call.fail(IST_TRIANGLES_MISSING, "a tree has no triangles: build both trees with them");
+      return false;
+    case QueryStatus::kNoVoxels:
+      call.fail(IST_VOXELS_MISSING,
+                "a tree has no voxels, which leaf pairs and contacts need: build both trees with a "
+                "voxel_size");
       return false;
     case QueryStatus::kManifoldMismatch:  // each manifold belongs to its query
     case QueryStatus::kBusy:              // a handle is used by one thread at a time

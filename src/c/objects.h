@@ -28,14 +28,18 @@ struct Tree : OfHandle<ist_tree, HandleKind::kTree, HandleUse::kShared> {
 };
 
 struct QueryObject : OfHandle<ist_query, HandleKind::kQuery, HandleUse::kAlone> {
-  /// @param manifold_options empty: the query gives no contacts
+  /// @param manifold_options empty: the query gives no contacts, as without voxels
   QueryObject(const SphereTree& fixed, const SphereTree& moving, const QueryOptions& options,
               const std::optional<ManifoldOptions>& manifold_options)
       : query(fixed, moving, options), query_options(options) {
-    if (!manifold_options) return;
+    if (!manifold_options || !has_voxels()) return;
     contact_options = *manifold_options;
     max_contacts = manifold_options->points;
     manifold.emplace(fixed, moving, query.policy(), *manifold_options);
+  }
+
+  [[nodiscard]] bool has_voxels() const noexcept {
+    return query.fixed().has_voxels() && query.moving().has_voxels();
   }
 
   Query query;
@@ -48,6 +52,10 @@ struct QueryObject : OfHandle<ist_query, HandleKind::kQuery, HandleUse::kAlone> 
 /// Converts a policy to its IST_SPHERES_...
 [[nodiscard]] constexpr std::int32_t spheres_of(SpherePolicy policy) noexcept {
   return static_cast<std::int32_t>(policy) + IST_SPHERES_SIMPLE;
+}
+/// Converts the policy of a tree or a query; IST_SPHERES_DEFAULT if it lacks voxels.
+[[nodiscard]] constexpr std::int32_t spheres_of(SpherePolicy policy, bool has_voxels) noexcept {
+  return has_voxels ? spheres_of(policy) : IST_SPHERES_DEFAULT;
 }
 static_assert(spheres_of(SpherePolicy::kSimple) == IST_SPHERES_SIMPLE &&
               spheres_of(SpherePolicy::kTable) == IST_SPHERES_TABLE &&
@@ -93,8 +101,8 @@ void check_tolerance(Call& call, const char* name, double tolerance);
 void check_finite(Call& call, const char* name, double number);
 IST_LOOP_API void check_threads(Call& call, const char* name, std::int32_t threads);
 
-/// Fails as a query that was created without contacts does.
-void not_prepared(Call& call);
+/// Returns whether a query gives contacts; fails if not.
+[[nodiscard]] bool gives_contacts(Call& call, const QueryObject& query);
 
 /// Fails for a status other than kDone. Returns whether the query answered.
 /// @param pose the pose that was asked about, or NULL

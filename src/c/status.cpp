@@ -36,7 +36,8 @@ constexpr struct {
              {kFixedPointRange, IST_FIXED_POINT_RANGE},
              {kMeshTooLarge, IST_MESH_TOO_LARGE},
              {kCancelled, IST_CANCELLED},
-             {kPartBusy, IST_PART_BUSY}};
+             {kPartBusy, IST_PART_BUSY},
+             {kVoxelsMissing, IST_VOXELS_MISSING}};
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < std::size(kRows); ++i)

@@ -157,8 +157,9 @@ void print_times(const Engines& engines, const Bodies& bodies,
 void print_answer_lines(const Engines& engines, const Bodies& bodies,
                         const std::vector<PoseAnswer>& answers) {
   for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (engines.empty()) print_json(answer_line(i, answers[i], std::nullopt, bodies));
     for (std::size_t e = 0; e < engines.size(); ++e) {
-      print_json(answer_line(i, answers[i], engines[e], answers[i].engines[e], bodies));
+      print_json(answer_line(i, answers[i], LeafAnswer{engines[e], answers[i].engines[e]}, bodies));
     }
   }
 }

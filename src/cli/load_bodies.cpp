@@ -19,6 +19,7 @@
 #include "ist/base/throw_error.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/mesh_source.h"
+#include "ist/tree/tree_parts.h"
 
 namespace ist::cli {
 
@@ -70,12 +71,11 @@ struct LoadedBody {
 
 void note(const std::string& sentence) { std::fprintf(stderr, "note: %s\n", sentence.c_str()); }
 
-// Takes the tree out of `body`, or builds it of its mesh; without a voxel size, of one voxel.
-SphereTree take_tree(LoadedBody& body, const BodyFiles& files, std::optional<double> voxel_size) {
+// Takes the tree out of `body`, or builds it of its mesh, without voxels if the size is 0.
+SphereTree take_tree(LoadedBody& body, const BodyFiles& files, double voxel_size) {
   if (body.tree) return std::move(*body.tree);
   BuildOptions options;
-  // A mesh without an extent is refused as such, not for its voxels.
-  options.voxel_size = voxel_size.value_or(body.extent > 0 ? body.extent : 1);
+  options.voxel_size = voxel_size;
   options.spheres = files.policy.value_or(options.spheres);
   options.max_memory = files.max_memory;
   options.source = body.source;
@@ -146,6 +146,16 @@ void check_frames(const LoadedBody& fixed, const LoadedBody& moving, PatientFram
             both_are_trees ? "'" : " to turn the mesh");
 }
 
+// Returns the voxel size of bodies without a --voxel-size, and says so on stderr.
+double default_voxel_size(double extent) {
+  const double size = rounded_voxel_size(extent);
+  std::fprintf(stderr,
+               "voxel size %s: 1/%.0f of the smaller body's largest extent; --voxel-size names "
+               "another\n",
+               fmt::format("{:.3g}", size).c_str(), kVoxelsOfExtent);
+  return size;
+}
+
 void tell_of_twins(const LoadedBody& fixed, const LoadedBody& moving) {
   std::error_code unknown;
   const bool twins = (fixed.source.hash != 0 && fixed.source.hash == moving.source.hash) ||
@@ -194,11 +204,9 @@ void print_warnings(const std::vector<std::string>& warnings) {
   }
 }
 
-double default_voxel_size(double extent, const std::string& of) {
-  const double size = rounded_voxel_size(extent);
-  std::fprintf(stderr, "voxel size %s: 1/%.0f of %s; --voxel-size names another\n",
-               fmt::format("{:.3g}", size).c_str(), kVoxelsOfExtent, of.c_str());
-  return size;
+void check_voxel_size(const std::optional<double>& voxel_size) {
+  refuse_if(voxel_size == 0.0, "--voxel-size",
+            "0 is no size: give a positive number, or leave the option out for no voxels");
 }
 
 SphereTree build_with_progress(const std::string& name, TriangleMesh mesh,
@@ -236,6 +244,7 @@ void add_units_and_frame(CLI::App& command, BodyFiles& files) {
 }
 
 Bodies load_bodies(const BodyFiles& files) {
+  check_voxel_size(files.voxel_size);
   const bool is_moving_told = files.moving_unit != LengthUnit::kUnknown;
   LoadedBody fixed(files.fixed, files.unit, "--unit"),
       moving(files.moving, is_moving_told ? files.moving_unit : files.unit,
@@ -250,10 +259,12 @@ Bodies load_bodies(const BodyFiles& files) {
   const bool triangles = fixed.has_triangles() && moving.has_triangles();
   const bool voxels =
       files.voxels == Voxels::kMade || (files.voxels == Voxels::kNeeded && !triangles);
-  std::optional<double> voxel_size = files.voxel_size;
-  if (!both_are_trees && !voxel_size && voxels) {
-    voxel_size = default_voxel_size(std::min(fixed.extent, moving.extent),
-                                    "the smaller body's largest extent");
+  for (const LoadedBody* body : {&fixed, &moving}) {
+    if (files.voxels == Voxels::kMade && body->tree) require_voxels(*body->tree, body->name());
+  }
+  double voxel_size = files.voxel_size.value_or(0);
+  if (!both_are_trees && !files.voxel_size && voxels) {
+    voxel_size = default_voxel_size(std::min(fixed.extent, moving.extent));
   }
   Bodies bodies{take_tree(fixed, files, voxel_size), take_tree(moving, files, voxel_size),
                 SpherePolicy::kTable};
@@ -265,10 +276,10 @@ Bodies load_bodies(const BodyFiles& files) {
   bodies.moving_has_border = moving.checked.has_border;
   bodies.policy =
       files.policy.value_or(std::min(bodies.fixed.tightest(), bodies.moving.tightest()));
-  bodies.fixed.require(bodies.policy, fixed.name());
-  bodies.moving.require(bodies.policy, moving.name());
-  if (fixed.tree || voxel_size) bodies.fixed_voxel_size = bodies.fixed.voxel_size();
-  if (moving.tree || voxel_size) bodies.moving_voxel_size = bodies.moving.voxel_size();
+  if (bodies.have_voxels()) {
+    bodies.fixed.require(bodies.policy, fixed.name());
+    bodies.moving.require(bodies.policy, moving.name());
+  }
   tell_of_twins(fixed, moving);
   if (!voxels) return bodies;
   for (const auto& [body, tree] : {std::pair(&fixed, &bodies.fixed), {&moving, &bodies.moving}}) {
@@ -283,7 +294,7 @@ SphereTree load_body(const std::filesystem::path& file, std::uint64_t max_memory
   if (body.checked.has_border) note(open_surfaces({body.name()}));
   BodyFiles files;
   files.max_memory = max_memory;
-  return take_tree(body, files, {});
+  return take_tree(body, files, 0);
 }
 
 }  // namespace ist::cli

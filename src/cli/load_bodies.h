@@ -29,9 +29,8 @@ void print_warnings(const std::vector<std::string>& warnings);
 /// Returns a sentence without a full stop about the files whose surfaces have a border.
 [[nodiscard]] std::string open_surfaces(const std::vector<std::string>& names);
 
-/// Returns rounded_voxel_size() for bodies without a --voxel-size, and says so on stderr. `of`
-/// names the extent: "the largest extent".
-[[nodiscard]] double default_voxel_size(double extent, const std::string& of);
+/// Refuses a --voxel-size of 0.
+void check_voxel_size(const std::optional<double>& voxel_size);
 
 /// Builds a tree under a progress bar: its own, or `progress`. Adds a warning that begins with
 /// `name` if components were turned outward.
@@ -43,16 +42,17 @@ void print_warnings(const std::vector<std::string>& warnings);
 
 /// The files of two bodies: each a mesh to build, or a tree to read.
 struct BodyFiles {
-  /// Whether meshes get voxels, or only one as large as themselves.
+  /// Whether meshes get voxels.
   enum class Voxels : std::uint8_t {
-    kMade,
+    kMade,    ///< and trees must have some
     kNeeded,  ///< made if the other body is a tree without triangles
     kNone,
   };
 
   std::filesystem::path fixed, moving;
   Voxels voxels = Voxels::kMade;
-  std::optional<double> voxel_size;    ///< of meshes, mesh units; empty: 1/500 of Bodies::extent()
+  /// Of meshes that get voxels, mesh units; empty: 1/500 of Bodies::extent().
+  std::optional<double> voxel_size;
   std::optional<SpherePolicy> policy;  ///< empty: the tightest that both have
   std::uint64_t max_memory = BuildOptions{}.max_memory;
   LengthUnit unit = LengthUnit::kUnknown;          ///< of both files, if they do not say it
@@ -72,7 +72,7 @@ void add_units_and_frame(CLI::App& command, BodyFiles& files);
 /// fixed body's, for a unit that a file contradicts, and for files in different frames.
 [[nodiscard]] answers::Bodies load_bodies(const BodyFiles& files);
 
-/// Loads one body whose voxels nobody asks of: a mesh gets one as large as itself.
+/// Loads one body. A mesh gets no voxels.
 [[nodiscard]] SphereTree load_body(const std::filesystem::path& file, std::uint64_t max_memory);
 
 }  // namespace ist::cli

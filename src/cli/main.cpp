@@ -35,6 +35,7 @@ ExitCode exit_code(ErrorCode code) {
     case ErrorCode::kMemoryLimit:
     case ErrorCode::kPolicyMissing:
     case ErrorCode::kTrianglesMissing:
+    case ErrorCode::kVoxelsMissing:
     case ErrorCode::kTargetMissing:
     case ErrorCode::kFixedPointRange:
       return kUsage;

@@ -75,8 +75,8 @@ void QuestionOptions::check() const {
 }
 
 bool QuestionOptions::asks_voxels() const {
-  const bool engine = timing || repeat > 1 || verify || questions.max_tests || workers > 1 ||
-                      !spheres.empty() || !target.empty() || !engines.empty();
+  const bool engine = timing || repeat > 1 || verify || workers > 1 || !spheres.empty() ||
+                      !target.empty() || !engines.empty();
   return engine || !contacts.empty() || files.voxel_size;
 }
 
@@ -97,10 +97,12 @@ void add_query_options(CLI::App& command, QuestionOptions& options) {
       ->required();
   add_file(command, "MOVING", options.files.moving, "mesh or tree of the body that is moved")
       ->required();
-  command.add_option("--voxel-size", options.files.voxel_size,
-                     "edge of a voxel, in mesh units; by default a 500th of the smaller body's "
-                     "largest extent. A mesh gets voxels if --contacts, an option of the engine or "
-                     "a tree without triangles needs them");
+  command.add_option(
+      "--voxel-size", options.files.voxel_size,
+      "edge of a voxel, in mesh units, for leaf pairs, contacts and times; by default "
+      "a 500th of the smaller body's largest extent. Triangles answer all else, so "
+      "a mesh gets voxels only if --contacts, an option of the engine or a tree "
+      "without triangles needs them");
   command
       .add_option(
           "--distance", options.questions.distance,

@@ -31,8 +31,8 @@ struct QuestionOptions {
 
   /// Throws a Refusal if options contradict each other, and kTargetMissing.
   void check() const;
-  /// Returns whether a question needs voxels: contacts, times, budgets and engines do. All other
-  /// questions are about triangles.
+  /// Returns whether a question needs voxels: contacts, times and engines do. All other questions
+  /// are about triangles.
   [[nodiscard]] bool asks_voxels() const;
   /// Returns the engines that answer, one or two.
   [[nodiscard]] std::vector<std::string> asked_engines() const;

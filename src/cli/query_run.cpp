@@ -89,8 +89,9 @@ void verify(Engines& engines, const Bodies& bodies, const std::vector<AskedPose>
 Meeting run_queries(const Bodies& bodies, const std::vector<AskedPose>& poses,
                     const QuestionOptions& options) {
   Examiner examiner(bodies, options.questions, options.target);
-  Engines engines;
+  Engines engines;  // none without voxels
   for (const std::string& name : options.asked_engines()) {
+    if (!bodies.have_voxels()) break;
     engines.emplace_back(
         name, bodies.fixed, bodies.moving,
         EngineOptions{bodies.policy, options.target, options.workers, options.questions.max_tests});

@@ -184,7 +184,9 @@ std::array<std::int32_t, 3> move_centre(const QuantizedPose& pose,
 
 QuantizedPose quantize_pose(const Eigen::Isometry3d& pose, const SphereTree& fixed,
                             const SphereTree& moving) {
-  return quantize_pose(pose, parts_of(fixed).lattice, parts_of(moving).lattice);
+  fixed.require(SpherePolicy::kSimple, "fixed");  // the circuit reads voxels
+  moving.require(SpherePolicy::kSimple, "moving");
+  return quantize_pose(pose, voxels_of(fixed).lattice, voxels_of(moving).lattice);
 }
 
 }  // namespace ist

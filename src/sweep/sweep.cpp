@@ -17,6 +17,7 @@
 #include "ist/measure/require.h"
 #include "ist/tree/mesh_source.h"
 #include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
 #include "sweep/npy_file.h"
 #include "sweep/pose_source.h"
 #include "sweep/start_mark.h"
@@ -91,6 +92,10 @@ std::shared_ptr<const Sweep::Bodies> Sweep::bodies() const {
     if (file_.questions.penetration) {
       require_triangles(loaded->fixed, "the fixed body");
       require_triangles(loaded->moving, "the moving body");
+    }
+    if (file_.questions.leaf_pairs || file_.questions.contacts) {
+      require_voxels(loaded->fixed, "the fixed body");
+      require_voxels(loaded->moving, "the moving body");
     }
     const std::string reason =
         contradiction(loaded->moving, moving.file.string(), loaded->fixed, fixed.file.string());

@@ -40,17 +40,6 @@ BodyKeys keys_of(TableReader& sweep, std::string_view name) {
 // Whether the questions need voxels. Triangles answer the other questions.
 bool need_voxels(const RowQuestions& asked) { return asked.leaf_pairs || asked.contacts; }
 
-// The voxel size of a mesh without questions for voxels: one voxel holds it.
-double size_of_one_voxel(const TriangleMesh& mesh) {
-  Eigen::Vector3d low = mesh.vertices.front(), high = low;
-  for (const Eigen::Vector3d& vertex : mesh.vertices) {
-    low = low.cwiseMin(vertex);
-    high = high.cwiseMax(vertex);
-  }
-  const double extent = (high - low).maxCoeff();
-  return extent > 0 ? extent : 1;  // build_tree() refuses a mesh without an extent
-}
-
 // Returns the unit or frame that the sweep file or the mesh says. Throws if they contradict.
 template <typename Word>
 Word agreed(const SweepBody& body, const char* key, Word told, Word said) {
@@ -65,7 +54,7 @@ SphereTree build(const SweepBody& body, std::optional<SpherePolicy> spheres) {
   mesh.unit = agreed(body, "unit", body.unit, mesh.unit);
   mesh.frame = agreed(body, "frame", body.frame, mesh.frame);
   BuildOptions options;
-  options.voxel_size = body.voxel_size > 0 ? body.voxel_size : size_of_one_voxel(mesh);
+  options.voxel_size = body.voxel_size;  // 0: a tree without voxels
   options.spheres = spheres.value_or(options.spheres);
   Progress progress;
   // Only the thread that called has a cancellation, and it takes part in the build.

@@ -18,7 +18,7 @@ struct SweepBody {
   std::string hash;            ///< XXH3-128 of the file
   std::string place;           ///< of its name, for messages: "job.toml:5: 'file' in [fixed]"
   bool is_mesh = false;
-  double voxel_size = 0;  ///< of a mesh, mesh units; 0: no question needs voxels
+  double voxel_size = 0;  ///< of a mesh, mesh units; 0: its tree has no voxels
   /// Of a mesh, if its file does not say it.
   LengthUnit unit = LengthUnit::kUnknown;
   PatientFrame frame = PatientFrame::kUnknown;

@@ -47,7 +47,7 @@ double half_diagonal(const Lattice& lattice) { return std::sqrt(0.75) * lattice.
 // Returns the radius of the largest bound of a leaf, mesh units; throws where the tree has none.
 double largest_radius(const SphereTree& tree, SpherePolicy policy, std::string_view body) {
   tree.require(policy, body);
-  if (is_implicit(policy)) return half_diagonal(parts_of(tree).lattice);
+  if (is_implicit(policy)) return half_diagonal(voxels_of(tree).lattice);
   double largest = 0;
   for (std::uint32_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
     largest = std::max(largest, read_bounds(tree, policy, leaf).ball.radius);
@@ -65,7 +65,7 @@ AnswerVerifier::AnswerVerifier(const SphereTree& fixed, const SphereTree& moving
       knows_geometry_(is_implicit(policy) || (fixed.triangles() && moving.triangles())),
       fixed_radius_(largest_radius(fixed, policy, "fixed")),
       grid_(fixed, fixed_radius_ + largest_radius(moving, policy, "moving")),
-      moving_codes_(parts_of(moving).octree.codes(0)) {}
+      moving_codes_(voxels_of(moving).octree.codes(0)) {}
 
 std::optional<Violation> AnswerVerifier::check(const Eigen::Isometry3d& pose,
                                                std::span<const GivenAnswer> answers) const {
@@ -77,7 +77,7 @@ std::optional<Violation> AnswerVerifier::check(const Eigen::Isometry3d& pose,
     }
   }
   if (rigid == Rigidity::kNone) return std::nullopt;
-  const Lattice &fixed = parts_of(fixed_).lattice, &moving = parts_of(moving_).lattice;
+  const Lattice &fixed = voxels_of(fixed_).lattice, &moving = voxels_of(moving_).lattice;
   const auto [motion, error] = frame_motion(pose, fixed, moving);
   const double lengths =
       fixed.edge(fixed.depth) + moving.edge(moving.depth) + motion.translation().norm();
@@ -111,7 +111,7 @@ AnswerVerifier::Found AnswerVerifier::check_list(const GivenAnswer& answer) cons
 Bounds AnswerVerifier::leaf_bounds(const SphereTree& tree, const std::vector<std::uint64_t>& codes,
                                    std::uint32_t leaf) const {
   if (!is_implicit(policy_)) return read_bounds(tree, policy_, leaf);
-  const Lattice& lattice = parts_of(tree).lattice;  // the circumsphere of the leaf's cube
+  const Lattice& lattice = voxels_of(tree).lattice;  // the circumsphere of the leaf's cube
   return {{leaf_centre(lattice, codes[leaf]), half_diagonal(lattice)}, {}};
 }
 
@@ -135,7 +135,7 @@ AnswerVerifier::Found AnswerVerifier::check_bounds(const Eigen::Isometry3d& moti
 std::optional<Violation> AnswerVerifier::find_missing(const Eigen::Isometry3d& motion,
                                                       double tolerance,
                                                       std::span<const GivenAnswer> answers) const {
-  const Lattice &fixed = parts_of(fixed_).lattice, &moving = parts_of(moving_).lattice;
+  const Lattice &fixed = voxels_of(fixed_).lattice, &moving = voxels_of(moving_).lattice;
   const CubeAxes axes(fixed.voxel_size, moving.voxel_size, motion.linear(), tolerance);
   std::optional<Violation> violation;
   std::vector<ClippedTriangle> moved_polygons;

@@ -87,16 +87,16 @@ bool CubeAxes::surely_meet(const Vector3d& apart) const noexcept {
 
 std::vector<ClippedTriangle> leaf_polygons(const SphereTree& tree, std::uint32_t leaf,
                                            std::uint64_t code) {
-  const LeafTriangles& triangles = *parts_of(tree).triangles;
-  const Lattice& lattice = parts_of(tree).lattice;
+  const TriangleMesh& mesh = parts_of(tree).triangles->mesh;
+  const Lattice& lattice = voxels_of(tree).lattice;
   const Cell cell = morton_decode(code);
   const Vector3d low(cell[0], cell[1], cell[2]);
   const Vector3d root = Vector3d::Constant(lattice.root_centre());
   std::vector<ClippedTriangle> polygons;
-  for (const std::uint32_t id : triangles.lists[leaf]) {
+  for (const std::uint32_t id : voxels_of(tree).lists[leaf]) {
     std::array<Vector3d, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) {
-      corners[i] = lattice.to_lattice(triangles.mesh.vertices[triangles.mesh.triangles[id][i]]);
+      corners[i] = lattice.to_lattice(mesh.vertices[mesh.triangles[id][i]]);
     }
     ClippedTriangle polygon;
     clip_triangle(corners, low, low + Vector3d::Ones(), polygon);

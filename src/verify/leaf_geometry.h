@@ -21,7 +21,7 @@ class LeafGrid {
   /// Hashes the leaves into cells at least as large as balls of `radius`, mesh units. The tree must
   /// outlive the grid. Cost: 20 ns and 8 bytes a leaf, and 40 bytes a cell.
   LeafGrid(const SphereTree& tree, double radius)
-      : lattice_(parts_of(tree).lattice), codes_(parts_of(tree).octree.codes(0)) {
+      : lattice_(voxels_of(tree).lattice), codes_(voxels_of(tree).octree.codes(0)) {
     while (level_ < lattice_.depth && lattice_.edge(level_) < 2 * radius) ++level_;
     for (std::uint32_t leaf = 0; leaf < codes_.size(); ++leaf) {
       runs_.try_emplace(codes_[leaf] >> 3 * level_, leaf);

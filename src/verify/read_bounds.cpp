@@ -15,10 +15,10 @@ std::uint32_t parent_of(const LinearOctree& octree, int level, std::uint32_t nod
 }
 
 Bounds read_bounds(const SphereTree& tree, SpherePolicy policy, std::uint32_t leaf) noexcept {
-  const std::uint32_t parent = parent_of(parts_of(tree).octree, 0, leaf);
-  const auto slot = static_cast<int>(leaf - parts_of(tree).octree.nodes(1)[parent].first_child);
-  Bounds bounds{parts_of(tree).saved_ball(0, parent, slot), {}};
-  if (policy == SpherePolicy::kSlab) bounds.slab = parts_of(tree).saved_slab(0, parent, slot);
+  const std::uint32_t parent = parent_of(voxels_of(tree).octree, 0, leaf);
+  const auto slot = static_cast<int>(leaf - voxels_of(tree).octree.nodes(1)[parent].first_child);
+  Bounds bounds{voxels_of(tree).saved_ball(0, parent, slot), {}};
+  if (policy == SpherePolicy::kSlab) bounds.slab = voxels_of(tree).saved_slab(0, parent, slot);
   return bounds;
 }
 

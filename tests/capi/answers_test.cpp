@@ -467,6 +467,67 @@ TEST_F(CAnswers, NearPartsAreThoseOfCpp) {
   EXPECT_GE(most, 8u);
 }
 
+TEST_F(CAnswers, WithoutVoxelsAreThoseOfTriangles) {
+  ist_tree* tree = c_tree(mesh_, 0);
+  auto info = sized<ist_tree_info>();
+  ASSERT_EQ(name(ist_tree_get_info(tree, &info)), "ok");
+  EXPECT_EQ(info.voxel_size, 0);
+  EXPECT_EQ(info.leaves, 0u);
+  EXPECT_EQ(info.depth, 0);
+  EXPECT_EQ(info.spheres, IST_SPHERES_DEFAULT);
+  EXPECT_EQ(info.triangles, mesh_.triangles.size());
+  EXPECT_EQ(info.largest_leaf_radius, 0);
+  double centre[3] = {7, 7, 7};
+  EXPECT_EQ(name(ist_tree_copy_leaf_centres(tree, centre, 1)), "ok");
+  EXPECT_EQ(centre[0], 7);
+  ist_query* query = nullptr;
+  auto options = sized<ist_query_options>();
+  options.spheres = IST_SPHERES_SLAB;
+  EXPECT_EQ(name(ist_query_create(tree, tree, &options, &query)), "policy-missing");
+  query = c_query(tree);
+  auto of_query = sized<ist_query_info>();
+  ASSERT_EQ(name(ist_query_get_info(query, &of_query)), "ok");
+  EXPECT_EQ(of_query.spheres, IST_SPHERES_DEFAULT);
+  EXPECT_EQ(of_query.contacts, 0u);
+  EXPECT_EQ(of_query.has_triangles, 1);
+  EXPECT_LT(of_query.bytes, query_.bytes());
+
+  for (const Eigen::Isometry3d& pose : poses()) {
+    std::int32_t answer = IST_ANSWER_UNKNOWN;
+    ASSERT_EQ(name(ist_query_intersects(query, pose.data(), nullptr, &answer)), "ok");
+    EXPECT_EQ(answer, static_cast<std::int32_t>(query_.intersects(pose).answer));
+    auto distance = sized<ist_distance_result>();
+    ASSERT_EQ(name(ist_query_distance(query, pose.data(), 1e-3, nullptr, &distance)), "ok");
+    const DistanceInterval wanted = query_.distance(pose, 1e-3).distance;
+    EXPECT_LE(distance.lower, wanted.upper);
+    EXPECT_GE(distance.upper, wanted.lower);
+    auto pairs = sized<ist_triangle_pairs_result>();
+    ASSERT_EQ(name(ist_query_triangle_pairs(query, pose.data(), nullptr, nullptr, 0, &pairs)),
+              "ok");
+    EXPECT_EQ(pairs.pairs, query_.triangle_pairs(pose, {}).triangle_pairs);
+
+    const auto expect_missing = [](ist_status status) {
+      EXPECT_EQ(name(status), "voxels-missing");
+      EXPECT_EQ(status, IST_VOXELS_MISSING);
+      EXPECT_TRUE(std::string(ist_last_error_message()).ends_with("with a voxel_size"))
+          << ist_last_error_message();
+    };
+    auto result = sized<ist_query_result>();
+    expect_missing(ist_query_leaf_pairs(query, pose.data(), nullptr, nullptr, 0, &result));
+    expect_missing(ist_query_contacts(query, pose.data(), nullptr, nullptr, 0, nullptr, &result));
+    auto rows = sized<ist_rows_options>();
+    ist_row row;
+    rows.questions = IST_ASK_CONTACTS;
+    expect_missing(ist_query_rows(query, pose.data(), 1, &rows, &row));
+    rows.questions = IST_ASK_LEAF_PAIRS;
+    EXPECT_EQ(name(ist_query_rows(query, pose.data(), 1, &rows, &row)), "voxels-missing");
+    rows.questions = IST_ASK_INTERSECTS;
+    ASSERT_EQ(name(ist_query_rows(query, pose.data(), 1, &rows, &row)), "ok");
+    EXPECT_EQ(row.intersects, answer);
+  }
+  EXPECT_EQ(name(ist_query_free(query)), "ok");
+}
+
 TEST(CTrees, TellTheUnitOfTheirFile) {
   const TempDir folder;
   const std::string file = folder.path() / "unit.ist";

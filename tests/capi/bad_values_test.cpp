@@ -231,9 +231,11 @@ TEST_F(CMisuse, OfOptionsIsTold) {
     change(options);
     return name(ist_tree_build(mesh_, &options, &no_tree_));
   };
-  EXPECT_EQ(built([](auto& o) { o.voxel_size = 0; }), "voxel-size-invalid");
+  EXPECT_EQ(built([](auto& o) { o.voxel_size = -1; }), "voxel-size-invalid");
   EXPECT_EQ(built([](auto& o) { o.voxel_size = NAN; }), "voxel-size-invalid");
   EXPECT_EQ(built([](auto& o) { o.voxel_size = 1e-9; }), "voxel-size-too-small");
+  EXPECT_EQ(built([](auto& o) { o.voxel_size = 0, o.drop_triangles = 1; }), "argument-invalid");
+  EXPECT_EQ(built([](auto& o) { o.voxel_size = 0, o.proximity = 1; }), "argument-invalid");
   EXPECT_EQ(built([](auto& o) { o.max_memory = 1; }), "memory-limit");
   EXPECT_EQ(built([](auto& o) { o.spheres = 5; }), "argument-invalid");
   EXPECT_EQ(built([](auto& o) { o.spheres = -1; }), "argument-invalid");

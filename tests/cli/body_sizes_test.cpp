@@ -75,6 +75,42 @@ TEST_F(BodySizes, OfJsonAloneHaveNoVoxels) {
   EXPECT_GT(json_lines(collide(built, built).out).at(0)["leaf_pairs"], 0);
 }
 
+TEST_F(BodySizes, OfTreesWithoutVoxelsAreNotAskedFor) {
+  const std::string mesh = needle("needle.stl", 4), alone = path("alone.ist"),
+                    built = tree("built.ist", "");
+  ist_well({"build", mesh, "-o", alone});
+  const json wanted = json_lines(collide(mesh, mesh).out).at(0);
+  for (const auto& [fixed, moving] :
+       {std::pair(alone, alone), {alone, mesh}, {built, alone}, {alone, built}}) {
+    const CommandResult result = collide(fixed, moving);
+    EXPECT_EQ(without_notes(result.err), "");
+    const json line = json_lines(result.out).at(0);
+    EXPECT_EQ(line.size(), wanted.size());
+    for (const char* key : {"touch", "inside", "distance_upper", "leaf_pairs", "engine", "contacts",
+                            "microseconds_min"}) {
+      EXPECT_EQ(line[key], wanted[key]) << key;
+    }
+    EXPECT_EQ(line["voxel_size"][0].is_null(), fixed != built);
+    EXPECT_EQ(line["voxel_size"][1].is_null(), moving != built);
+    EXPECT_EQ(json_lines(collide(fixed, moving, {"--max-tests", "1000000"}).out).at(0)["touch"],
+              "yes");
+    const json path_of = json_lines(ist_well({"approach", fixed, moving, "--axis", "y", "--from",
+                                              "-1", "--to", "0", "--step", "1", "--json"})
+                                        .out)
+                             .back();
+    EXPECT_EQ(path_of["first_contact"], "contact");
+    for (const std::vector<std::string>& more :
+         {std::vector<std::string>{"--contacts", path("out.csv")},
+          {"--engine", "simd"},
+          {"--verify"},
+          {"--spheres", "slab"}}) {
+      const CommandResult refused = collide(fixed, moving, more);
+      EXPECT_EQ(refused.exit_code, 2) << more[0];
+      EXPECT_TRUE(says(refused.err, "no voxels: build it with a voxel size")) << refused.err;
+    }
+  }
+}
+
 TEST_F(BodySizes, MeshesKeepTheirTrianglesForAQuery) {
   const std::string of = needle("needle.stl", 4);
   EXPECT_GT(json_lines(collide(of, of, {"--exact"}).out).at(0)["triangle_pairs"], 0);

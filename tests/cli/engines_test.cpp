@@ -133,14 +133,8 @@ class Verify : public CliTest {
     options.spheres = SpherePolicy::kTight;
     options.keep_triangles = true;
     const SphereTree tree = build_tree(icosphere(2, 2), options);
-    TreeParts parts{parts_of(tree).lattice,
-                    parts_of(tree).octree,
-                    tree.orientation(),
-                    parts_of(tree).normals,
-                    parts_of(tree).bounds,
-                    parts_of(tree).triangles,
-                    std::nullopt};
-    for (BallBlock& block : parts.bounds.balls[0]) {
+    TreeParts parts = parts_of(tree);
+    for (BallBlock& block : parts.voxels->bounds.balls[0]) {
       for (std::uint16_t& radius : block.r) radius = static_cast<std::uint16_t>(radius / 16);
     }
     write_tree(tree_from(std::move(parts)), path("lies.ist"));

@@ -30,11 +30,11 @@ TEST_F(Files, BuildSaysWhatItMade) {
   EXPECT_EQ(line["voxel_size"], 0.08);
   EXPECT_EQ(line["spheres"], "slab");
   EXPECT_EQ(line["voxels"], tree.leaf_count());
-  EXPECT_EQ(line["nodes"], parts_of(tree).octree.node_count());
+  EXPECT_EQ(line["nodes"], voxels_of(tree).octree.node_count());
   EXPECT_EQ(line["depth"], 6);
   EXPECT_EQ(line["bytes"], std::filesystem::file_size(path("out.ist")));
   EXPECT_TRUE(line["memory"].is_number_unsigned());
-  EXPECT_EQ(line["proximity_voxels"], parts_of(tree).proximity->octree.leaf_count());
+  EXPECT_EQ(line["proximity_voxels"], voxels_of(tree).proximity->octree.leaf_count());
   EXPECT_EQ(line["warnings"], json::array());
   EXPECT_GT(line["milliseconds"].size(), 2u);
   for (const json& stage : line["milliseconds"]) EXPECT_TRUE(stage.is_number());
@@ -49,6 +49,30 @@ TEST_F(Files, BuildSaysWhatItMade) {
   EXPECT_TRUE(says(plain.out, "ms"));
 }
 
+TEST_F(Files, ATreeWithoutVoxelsIsShownAndNotExported) {
+  const std::string tree = path("alone.ist");
+  ist_well({"build", ball(), "-o", tree, "--unit", "mm"});
+  const json line = json_lines(ist_well({"info", tree, "--json"}).out).at(0);
+  for (const char* key : {"voxel_size", "cells", "depth", "voxels", "nodes"}) {
+    ASSERT_TRUE(line.contains(key)) << key;
+    EXPECT_TRUE(line[key].is_null()) << key;
+  }
+  EXPECT_EQ(line["levels"], json::array());
+  EXPECT_EQ(line["triangles"], true);
+  EXPECT_EQ(line["closed"], true);
+  EXPECT_EQ(line["self_intersections"], 0);
+  const CommandResult words = ist_well({"info", tree});
+  EXPECT_TRUE(says(words.out, "a tree of triangles without voxels"));
+  EXPECT_TRUE(says(words.out, "orientation outward, 320 triangles kept\n"));
+  for (const char* what : {"voxels", "spheres"}) {
+    const CommandResult refused =
+        ist({"export", tree, "--what", what, "--level", "0", "-o", path("out.vtp")});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_TRUE(says(refused.err, "no voxels: build it with a voxel size"));
+    EXPECT_FALSE(exists("out.vtp"));
+  }
+}
+
 TEST_F(Files, BuildSavesTheSpheresThatItIsAskedFor) {
   std::uintmax_t bytes = 0;
   for (const char* spheres : {"table", "tight", "slab"}) {
@@ -61,7 +85,8 @@ TEST_F(Files, BuildSavesTheSpheresThatItIsAskedFor) {
     // 8 bytes a ball, and 5 a slab.
     const std::uintmax_t more = std::filesystem::file_size(path("out.ist")) - bytes;
     if (bytes > 0) {
-      EXPECT_EQ(more, parts_of(tree).octree.node_count() * (tree.has(SpherePolicy::kSlab) ? 5 : 8));
+      EXPECT_EQ(more,
+                voxels_of(tree).octree.node_count() * (tree.has(SpherePolicy::kSlab) ? 5 : 8));
     }
     bytes += more;
   }
@@ -159,7 +184,7 @@ TEST_F(Files, InfoOfATree) {
     const json& row = line["levels"][level];
     EXPECT_EQ(row["level"], level);
     EXPECT_EQ(row["edge"], std::ldexp(0.5, static_cast<int>(level)));
-    EXPECT_EQ(row["nodes"], parts_of(tree).octree.node_count(static_cast<int>(level)));
+    EXPECT_EQ(row["nodes"], voxels_of(tree).octree.node_count(static_cast<int>(level)));
     EXPECT_LE(row["volume"]["table"], row["volume"]["simple"]);
     EXPECT_GT(row["volume"]["tight"], 0);
     EXPECT_FALSE(row["volume"].contains("slab"));
@@ -178,7 +203,7 @@ TEST_F(Files, ExportedSpheresAreThoseOfTheTree) {
       if (*spheres != '\0') arguments.insert(arguments.end(), {"--spheres", spheres});
       const auto lines = json_lines(ist_well(arguments).out);
       const PlyFile ply = parse_ply(file_content(path("s.ply")));
-      EXPECT_EQ(ply.vertices.size(), parts_of(tree).octree.node_count(level));
+      EXPECT_EQ(ply.vertices.size(), voxels_of(tree).octree.node_count(level));
       ASSERT_EQ(lines.size(), 1u);
       EXPECT_EQ(lines[0]["count"], ply.vertices.size());
       EXPECT_EQ(lines[0]["what"], "spheres");
@@ -206,7 +231,7 @@ TEST_F(Files, ExportedVoxelsAreClosed) {
     const auto lines = json_lines(ist_well({"export", file, "--what", "voxels", "--level",
                                             std::to_string(level), "-o", path("v.ply"), "--json"})
                                       .out);
-    EXPECT_EQ(lines.at(0)["count"], parts_of(tree).octree.node_count(level));
+    EXPECT_EQ(lines.at(0)["count"], voxels_of(tree).octree.node_count(level));
     const PlyFile ply = parse_ply(file_content(path("v.ply")));
     const auto place = [&](std::uint32_t vertex) {
       const auto& v = ply.vertices.at(vertex);
@@ -222,7 +247,7 @@ TEST_F(Files, ExportedVoxelsAreClosed) {
     for (const auto& corner : corners) {
       for (std::size_t i = 0; i < 3; ++i) {
         const double edges =
-            (corner[i] - parts_of(tree).lattice.corner[i]) / std::ldexp(0.5, level);
+            (corner[i] - voxels_of(tree).lattice.corner[i]) / std::ldexp(0.5, level);
         EXPECT_NEAR(edges, std::round(edges), 1e-6);
       }
     }
@@ -251,7 +276,7 @@ TEST_F(Files, ExportedVoxelsAreClosed) {
       EXPECT_EQ(count.second, 0);
     }
     const double cube = std::pow(std::ldexp(0.5, level), 3);
-    EXPECT_NEAR(volume, cube * parts_of(tree).octree.node_count(level), 1e-4)
+    EXPECT_NEAR(volume, cube * voxels_of(tree).octree.node_count(level), 1e-4)
         << "faces turn outward";
   }
 }

@@ -61,13 +61,33 @@ TEST_F(Sources, TrianglesAreKeptUnlessTheyAreDeclined) {
   EXPECT_EQ(read_tree(ball_tree("b.ist", "slab", {"--no-triangles"})).triangles(), nullptr);
 }
 
-TEST_F(Sources, BuildChoosesVoxelsOfTheExtentAloud) {
-  const CommandResult result =
-      ist_well({"build", needle("n.stl", 1.1641), "-o", path("t.ist"), "--json"});
-  EXPECT_EQ(result.err,
-            "voxel size 0.00233: 1/500 of the largest extent; --voxel-size names another\n");
-  EXPECT_EQ(json_lines(result.out).at(0)["voxel_size"], 0.00233);
-  EXPECT_EQ(read_tree(path("t.ist")).voxel_size(), 0.00233);
+TEST_F(Sources, BuildMakesNoVoxelsUnlessItIsAskedTo) {
+  const std::string of = needle("n.stl", 1.1641), to = path("t.ist");
+  const CommandResult result = ist_well({"build", of, "-o", to, "--json"});
+  EXPECT_EQ(result.err, "");
+  const json line = json_lines(result.out).at(0);
+  EXPECT_EQ(line["triangles"], 12);
+  EXPECT_GT(line["bytes"], 0);
+  for (const char* key : {"voxel_size", "spheres", "voxels", "nodes", "depth"}) {
+    ASSERT_TRUE(line.contains(key)) << key;
+    EXPECT_TRUE(line[key].is_null()) << key;
+  }
+  EXPECT_FALSE(read_tree(to).has_voxels());
+  EXPECT_TRUE(says(ist_well({"build", of, "-o", to}).out, "12 triangles, no voxels"));
+  const std::string before = file_content(to);
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--spheres", "tight"},
+                                               {"--no-triangles"},
+                                               {"--classes", "surface,proximity"}}) {
+    std::vector<std::string> arguments{"build", of, "-o", to};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const CommandResult refused = ist(arguments);
+    EXPECT_EQ(refused.exit_code, 2) << more[0];
+    EXPECT_TRUE(says(refused.err, more[0] + ": goes with --voxel-size"));
+  }
+  const CommandResult zero = ist({"build", of, "-o", to, "--voxel-size", "0"});
+  EXPECT_EQ(zero.exit_code, 2);
+  EXPECT_TRUE(says(zero.err, "leave the option out for no voxels"));
+  EXPECT_EQ(file_content(to), before);
 }
 
 TEST_F(Sources, InfoTellsTheSizeByUnit) {

@@ -267,8 +267,8 @@ void expect_no_miss(const SphereTree& fixed, const SphereTree& moving,
   for (const double dz : closings) {
     const Eigen::Isometry3d pose = closing(dz);
     const QuantizedPose quantized =
-        quantize_pose(pose, parts_of(fixed).lattice, parts_of(moving).lattice);
-    const ExactFrames exact(pose, parts_of(fixed).lattice, parts_of(moving).lattice);
+        quantize_pose(pose, voxels_of(fixed).lattice, voxels_of(moving).lattice);
+    const ExactFrames exact(pose, voxels_of(fixed).lattice, voxels_of(moving).lattice);
     const auto touch = [&](const HardwareNode& a, const HardwareNode& b) {
       const bool hit = test_pair(node_pair(quantized, a, b), quantized.registers).hit;
       const bool intersects = exact.touch(a, b);

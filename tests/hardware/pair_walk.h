@@ -71,21 +71,21 @@ class PairWalk {
   static Node root(const SphereTree& tree) {
     return {{{},
              tree.depth(),
-             tree.depth() == 0 ? std::uint8_t{255} : parts_of(tree).octree.mask(tree.depth(), 0)},
+             tree.depth() == 0 ? std::uint8_t{255} : voxels_of(tree).octree.mask(tree.depth(), 0)},
             0};
   }
 
   Children open(const SphereTree& tree, const Node& node) {
     const int level = node.seen.level - 1;
     Children children;
-    std::uint32_t index = parts_of(tree).octree.first_child(level + 1, node.index);
+    std::uint32_t index = voxels_of(tree).octree.first_child(level + 1, node.index);
     for (unsigned bits = node.seen.mask; bits != 0; bits &= bits - 1) {
       const int k = std::countr_zero(bits);
       Node& child = children.nodes[static_cast<std::size_t>(children.count++)];
       child = {node.seen, index++};
       child.seen.level = level;
       child.seen.mask =
-          level == 0 ? std::uint8_t{255} : parts_of(tree).octree.mask(level, child.index);
+          level == 0 ? std::uint8_t{255} : voxels_of(tree).octree.mask(level, child.index);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         child.seen.centre[axis] += (k >> axis & 1) != 0 ? 6 << level : -(6 << level);
       }
@@ -102,8 +102,8 @@ class PairWalk {
       return;
     }
     ++counts_.opened;
-    const double edge_a = parts_of(fixed_).lattice.edge(a.seen.level);
-    const double edge_b = parts_of(moving_).lattice.edge(b.seen.level);
+    const double edge_a = voxels_of(fixed_).lattice.edge(a.seen.level);
+    const double edge_b = voxels_of(moving_).lattice.edge(b.seen.level);
     Children of_a{1, {a}}, of_b{1, {b}};
     if (descends(a.seen.level, edge_a, b.seen.level, edge_b)) of_a = open(fixed_, a);
     if (descends(b.seen.level, edge_b, a.seen.level, edge_a)) {

@@ -134,6 +134,18 @@ TEST(FirstContact, WithoutAContact_HasNoPlace) {
       ContactStatus::kStopped);
 }
 
+TEST(FirstContact, IsTheSameWithoutVoxels) {
+  const TriangleMesh a = icosphere(3, 2), b = box({-1, -1, -1}, {1, 1, 1});
+  BodyPair voxels(a, b), alone(a, b, 0);
+  const Motion motion = Motion::between(place({0.3, 0.2, 9}), place({0.3, 0.2, -2}));
+  const FirstContact found = first_contact(alone.query, motion, 1e-6),
+                     wanted = first_contact(voxels.query, motion, 1e-6);
+  expect_contact(alone, motion, 1e-6, found);
+  EXPECT_NEAR(found.lower, wanted.lower, 2e-6);
+  EXPECT_NEAR(found.upper, wanted.upper, 2e-6);
+  EXPECT_EQ(found.triangles, wanted.triangles);
+}
+
 TEST(FirstContact, SaysHowFarThePosesWere) {
   BodyPair pair(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1}));
   Pose from = place({0.3, 0.2, 4}), to = place({0.3, 0.2, -2});

@@ -102,6 +102,20 @@ TEST(Occlusion, OfBoxesIsExact) {
   EXPECT_NEAR(deep.moving.depth_at_vertices, 0.25, 1e-12);
 }
 
+TEST(Occlusion, IsTheSameWithoutVoxels) {
+  const TriangleMesh a = icosphere(3, 4), b = icosphere(3, 2);
+  BodyPair voxels(a, b), alone(a, b, 0);
+  const Eigen::Isometry3d pose = place({0.1, 0.2, 5.8});
+  const Occlusion found = occlusion(alone.query, pose), wanted = occlusion(voxels.query, pose);
+  for (const auto& [one, other] :
+       {std::pair(&found.fixed, &wanted.fixed), {&found.moving, &wanted.moving}}) {
+    EXPECT_EQ(one->areas, other->areas);
+    EXPECT_EQ(one->penetrating_area, other->penetrating_area);
+    EXPECT_EQ(one->depth_at_vertices, other->depth_at_vertices);
+    EXPECT_EQ(one->regions.size(), other->regions.size());
+  }
+}
+
 TEST(Occlusion, IsContinuousInThePose) {
   const Bite bite(icosphere(3, 4), icosphere(3, 2));
   double last = -1;

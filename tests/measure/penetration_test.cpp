@@ -65,6 +65,19 @@ TEST(Penetration, OfSpheresIsTheirClosedForm) {
   expect_consistent(bodies, place({0, 1.5, 0}), inside, 1e-3);
 }
 
+TEST(Penetration, IsTheSameWithoutVoxels) {
+  const TriangleMesh a = icosphere(3, 4), b = box({-1, -1, -1}, {1, 1, 1});
+  BodyPair voxels(a, b), alone(a, b, 0);
+  for (const double apart : {7.0, 4.5, 4.0, 1.0}) {
+    const Pose pose = place(apart * Vector(0.6, 0, 0.8));
+    const Penetration found = penetration(alone.query, pose, 1e-3),
+                      wanted = penetration(voxels.query, pose, 1e-3);
+    EXPECT_LE(found.lower, wanted.upper) << apart;
+    EXPECT_GE(found.upper, wanted.lower) << apart;
+    EXPECT_LE(found.upper - found.lower, 1e-3 + found.narrowest) << apart;
+  }
+}
+
 TEST(Penetration, SaysHowFarThePoseWas) {
   Bodies bodies(icosphere(2, 4), icosphere(2, 2));
   Pose rough = place({5, 0, 0});

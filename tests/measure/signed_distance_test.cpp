@@ -385,6 +385,20 @@ TEST(DistanceMap, MovesTheVerticesOfOneBodyToTheOther) {
   for (const SurfaceDistance& one : to_moving) EXPECT_TRUE(std::isnan(one.distance));
 }
 
+TEST(SignedDistance, IsTheSameWithoutVoxels) {
+  Random random(5);
+  for (const TriangleMesh& mesh : {icosphere(2, 1), moved(box({0, 0, 0}, {4, 1, 2}), {90, 0, 7})}) {
+    const SphereTree alone = build_tree(mesh), voxels = body(mesh);
+    const std::vector<Vector> points = points_about(mesh, samples(600), 2, random);
+    const auto found = signed_distance(alone, points, kInfinite),
+               wanted = signed_distance(voxels, points, kInfinite);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      ASSERT_NEAR(found[i].distance, wanted[i].distance, 1e-13) << points[i].transpose();
+      ASSERT_EQ(found[i].is_signed, wanted[i].is_signed);
+    }
+  }
+}
+
 TEST(SignedDistance, RefusesWhatIsNoQuestion) {
   const SphereTree tree = body(box({0, 0, 0}, {1, 1, 1}));
   const std::vector<Vector> fine = {{0, 0, 0}};

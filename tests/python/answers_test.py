@@ -144,6 +144,28 @@ class Verbs(Jaws):
         with self.assertRaisesRegex(ist.InputError, "scale"):
             self.query.intersects(pose)
 
+    def test_without_voxels_triangles_answer(self):
+        upper, lower = (ist.build((tree.vertices, tree.faces)) for tree in (self.upper, self.lower))
+        self.assertEqual((upper.voxel_size, upper.leaves, upper.depth, upper.spheres), (0, 0, 0, "none"))
+        self.assertEqual(upper.leaf_centres.shape, (0, 3))
+        self.assertIn("no voxels", repr(upper))
+        self.assertEqual(ist.load(upper.to_bytes()).to_bytes(), upper.to_bytes())
+        for fixed, moving in ((upper, lower), (upper, self.lower), (self.upper, lower)):
+            query = ist.Query(fixed, moving)
+            self.assertEqual(query.spheres, "none")
+            self.assertLess(query.nbytes, self.query.nbytes)
+            for pose in JAW_POSES:
+                self.assertEqual(query.intersects(pose), self.query.intersects(pose))
+                self.assertEqual(query.triangle_pairs(pose).count, self.query.triangle_pairs(pose).count)
+                found, wanted = query.distance(pose, 0.01), self.query.distance(pose, 0.01)
+                self.assertTrue(found.lower <= wanted.upper and wanted.lower <= found.upper)
+            for ask in (query.leaf_pairs, query.contacts, lambda pose: query.rows(pose[None], want=["contacts"])):
+                with self.assertRaisesRegex(ist.InputError, "voxel_size") as caught:
+                    ask(JAW_POSES[0])
+                self.assertEqual((caught.exception.code, caught.exception.name), (ist.VOXELS_MISSING, "voxels-missing"))
+            with self.assertRaisesRegex(ist.InputError, "build it with a voxel size"):
+                ist.Query(fixed, moving, spheres="slab")
+
     def test_a_limit_ends_a_search(self):
         stopped = self.query.leaf_pairs(JAW_POSES[2], tests=200)
         self.assertFalse(stopped.complete)

@@ -80,8 +80,10 @@ class Meshes(Misuse):
         self.assertEqual(self.builds("extent", (VERTICES * 1e20, FACES)).name, "mesh-extent")
 
     def test_options(self):
-        for size in (0, -1, np.inf):
+        for size in (-1, np.inf):
             self.builds("voxel size", (VERTICES, FACES), size)
+        for words in ({"keep_triangles": False}, {"proximity": True}):
+            self.builds("give a voxel size", (VERTICES, FACES), 0, **words)
         self.builds("voxel_size", (VERTICES, FACES), np.nan)
         self.builds("voxel_size", (VERTICES, FACES), "small")
         self.builds(["spheres", "tight"], (VERTICES, FACES), spheres="round")

@@ -38,7 +38,7 @@ class AllPairs {
     slabs_ = last.fixed.slabs != nullptr;
     fixed_side_ = leaf_side(last.fixed);
     const SearchSide side = leaf_side(last.moving);
-    const auto parents = static_cast<std::uint32_t>(parts_of(moving).octree.nodes(1).size() - 1);
+    const auto parents = static_cast<std::uint32_t>(voxels_of(moving).octree.nodes(1).size() - 1);
     for (std::uint32_t parent = 0; parent < parents; ++parent) {
       if (lanes_.empty() || lanes_.back().count + 8 > MovingLanes::kSize) {
         lanes_.push_back({std::make_unique<MovingLanes>(), 0});
@@ -57,7 +57,7 @@ class AllPairs {
   // The answer of every engine, and of a search with a margin by the best.
   std::size_t check(const Eigen::Isometry3d& pose, double margin) {
     const RelativePose relative =
-        *relative_pose(pose, parts_of(fixed_).lattice, parts_of(moving_).lattice);
+        *relative_pose(pose, parts_of(fixed_).origin, parts_of(moving_).origin);
     const TreeLengths fixed = lengths_of(fixed_, policy_), moving = lengths_of(moving_, policy_);
     const std::vector<LeafPair> expected = by_leaves(to_float(relative, fixed, moving));
     for (const auto& query : queries_) {
@@ -86,7 +86,7 @@ class AllPairs {
 
   [[nodiscard]] std::vector<LeafPair> by_leaves(const SearchPose& pose) const {
     std::vector<LeafPair> pairs;
-    const auto parents = static_cast<std::uint32_t>(parts_of(fixed_).octree.nodes(1).size() - 1);
+    const auto parents = static_cast<std::uint32_t>(voxels_of(fixed_).octree.nodes(1).size() - 1);
     auto fixed = std::make_unique<FixedLanes>();
     FixedRows rows{};
     for (std::uint32_t parent = 0; parent < parents; ++parent) {

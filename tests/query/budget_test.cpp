@@ -148,7 +148,7 @@ struct Watched : PairLister {
 void expect_looks(const SphereTree& fixed, const SphereTree& moving, const Eigen::Isometry3d& at) {
   const SearchPlan plan(fixed, moving, SpherePolicy::kSlab);
   Search search(plan, select_kernels(""), 1 << 16);
-  const auto relative = relative_pose(at, parts_of(fixed).lattice, parts_of(moving).lattice);
+  const auto relative = relative_pose(at, parts_of(fixed).origin, parts_of(moving).origin);
   const SearchPose pose = to_float(*relative, lengths_of(fixed, SpherePolicy::kSlab),
                                    lengths_of(moving, SpherePolicy::kSlab));
   std::vector<LeafPair> out(1 << 20), all_out(1 << 20);

@@ -63,7 +63,7 @@ class Judged {
     const SearchPlan plan(fixed(), moving(), policy);
     Search search(plan, select_kernels(""), 1 << 12);
     const SearchPose from =
-        to_float(*relative_pose(pose, parts_of(fixed()).lattice, parts_of(moving()).lattice),
+        to_float(*relative_pose(pose, parts_of(fixed()).origin, parts_of(moving()).origin),
                  lengths_of(fixed(), policy), lengths_of(moving(), policy), margin);
     std::vector<LeafPair> found(std::size_t{fixed().leaf_count()} * moving().leaf_count() +
                                 kLeafPairSpare);
@@ -232,8 +232,8 @@ TEST_P(Guarantee, IsKeptWhereCornersMeet) {
     const double cells_a = 1 + static_cast<double>(random.below(6)),
                  cells_b = 1 + static_cast<double>(random.below(6));
     Judged bodies(a, cells_a, b, cells_b, GetParam());
-    const Lattice &fixed = parts_of(bodies.fixed()).lattice,
-                  &moving = parts_of(bodies.moving()).lattice;
+    const Lattice &fixed = voxels_of(bodies.fixed()).lattice,
+                  &moving = voxels_of(bodies.moving()).lattice;
     for (int k = 0; k < 8; ++k) {
       const Eigen::Matrix3d& turn = turns[random.below(turns.size())];
       Eigen::Vector3d at = corner_in_corner(fixed, moving, turn, k);
@@ -303,17 +303,17 @@ TEST_P(GuaranteeOfOneVoxel, IsKeptWhereSlabsAlonePart) {
     const TriangleMesh a = plate(random), b = plate(random);
     Judged bodies(a, 0.9, b, 0.9, GetParam());
     const SphereTree &fixed = bodies.fixed(), &moving = bodies.moving();
-    ASSERT_EQ(parts_of(fixed).octree.node_count() + parts_of(moving).octree.node_count(), 2u);
+    ASSERT_EQ(voxels_of(fixed).octree.node_count() + voxels_of(moving).octree.node_count(), 2u);
     Query balls(fixed, moving, options_of(SpherePolicy::kTight));
 
     // Out of one of the slabs along its normal, from where the balls' centres are one.
     const Eigen::Matrix3d rotation = random.rotation();
-    const Eigen::Vector3d centre = fixed.origin() + parts_of(fixed).saved_ball(0, 0, 0).centre;
+    const Eigen::Vector3d centre = fixed.origin() + voxels_of(fixed).saved_ball(0, 0, 0).centre;
     const Eigen::Vector3d moving_centre =
-        moving.origin() + parts_of(moving).saved_ball(0, 0, 0).centre;
+        moving.origin() + voxels_of(moving).saved_ball(0, 0, 0).centre;
     const Eigen::Vector3d normal = seed % 2 == 0
-                                       ? parts_of(fixed).saved_slab(0, 0, 0).normal
-                                       : rotation * parts_of(moving).saved_slab(0, 0, 0).normal;
+                                       ? voxels_of(fixed).saved_slab(0, 0, 0).normal
+                                       : rotation * voxels_of(moving).saved_slab(0, 0, 0).normal;
     const auto pose = [&](double gap) {
       return pose_of(rotation, centre - rotation * moving_centre + gap * normal);
     };

@@ -93,13 +93,9 @@ SphereTree tree_of_masks(std::vector<std::vector<std::uint8_t>> masks) {
   const int depth = static_cast<int>(masks.size());
   LinearOctree octree(std::move(masks));
   const std::size_t leaves = octree.leaf_count();
-  return tree_from({Lattice{{0, 0, 0}, 0.3, 1U << depth, depth},
-                    std::move(octree),
-                    Orientation::kOutward,
-                    std::vector<PackedNormal>(leaves),
-                    {},
-                    std::nullopt,
-                    std::nullopt});
+  return tree_from({TreeVoxels{Lattice{{0, 0, 0}, 0.3, 1U << depth, depth}, std::move(octree),
+                               std::vector<PackedNormal>(leaves)},
+                    std::nullopt, Orientation::kOutward});
 }
 
 // A root of every mask, and a voxel outside it that only just touches one of its leaves: where that
@@ -111,7 +107,7 @@ TEST_P(ImplicitPolicies, FindALeafOutsideThePublishedRootBall) {
     const SphereTree root = tree_of_masks({{static_cast<std::uint8_t>(mask)}});
     const std::vector<Eigen::Vector3d> leaves = root.leaf_centres();
     const Eigen::Vector3d centre =
-        root.origin() + parts_of(root).ball(SpherePolicy::kTable, 1, 0, {0, 0, 0}).centre;
+        root.origin() + voxels_of(root).ball(SpherePolicy::kTable, 1, 0, {0, 0, 0}).centre;
     for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
       const Eigen::Vector3d out = leaves[leaf] - centre;
       if (out.norm() < 0.1 * root.voxel_size()) continue;

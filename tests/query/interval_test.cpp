@@ -28,15 +28,15 @@ struct Bound {
 
 Bound bound_of(const SphereTree& tree, SpherePolicy policy, int level, std::uint32_t parent,
                int slot) {
-  const TreeParts& parts = parts_of(tree);
+  const TreeVoxels& voxels = voxels_of(tree);
   if (policy == SpherePolicy::kSlab) {
-    return {parts.saved_ball(level, parent, slot), parts.saved_slab(level, parent, slot)};
+    return {voxels.saved_ball(level, parent, slot), voxels.saved_slab(level, parent, slot)};
   }
-  if (policy == SpherePolicy::kTight) return {parts.saved_ball(level, parent, slot), {}};
-  const OctreeNode& above = parts.octree.nodes(level + 1)[parent];
+  if (policy == SpherePolicy::kTight) return {voxels.saved_ball(level, parent, slot), {}};
+  const OctreeNode& above = voxels.octree.nodes(level + 1)[parent];
   Eigen::Vector3d centre(above.centre[0], above.centre[1], above.centre[2]);
   if (level < tree.depth()) {  // the root has the centre of its parent
-    unsigned octants = parts.octree.mask(level + 1, parent);
+    unsigned octants = voxels.octree.mask(level + 1, parent);
     for (int i = 0; i < slot; ++i) octants &= octants - 1;
     const unsigned octant = static_cast<unsigned>(std::countr_zero(octants));
     for (unsigned axis = 0; axis < 3; ++axis) {
@@ -44,13 +44,13 @@ Bound bound_of(const SphereTree& tree, SpherePolicy policy, int level, std::uint
     }
   }
   const std::uint32_t node = above.first_child + static_cast<std::uint32_t>(slot);
-  return {parts.nested_ball(policy, level, node, centre), {}};
+  return {voxels.nested_ball(policy, level, node, centre), {}};
 }
 
 // The level of the nodes that a side of a step reads.
 int level_of(const SphereTree& tree, const SearchSide& side) {
   int level = tree.depth() + 1;
-  while (level > 1 && parts_of(tree).octree.nodes(level).data() != side.nodes) --level;
+  while (level > 1 && voxels_of(tree).octree.nodes(level).data() != side.nodes) --level;
   return level;
 }
 
@@ -62,7 +62,7 @@ std::vector<Bound> bounds_of(const SphereTree& tree, SpherePolicy policy, const 
     return {bound_of(tree, policy, level - 1, node / 8, static_cast<int>(node % 8))};
   }
   std::vector<Bound> bounds;
-  for (int slot = 0; slot < parts_of(tree).octree.child_count(level, node); ++slot) {
+  for (int slot = 0; slot < voxels_of(tree).octree.child_count(level, node); ++slot) {
     bounds.push_back(bound_of(tree, policy, level - 1, node, slot));
   }
   return bounds;

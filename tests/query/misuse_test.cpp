@@ -117,6 +117,64 @@ TEST_F(Misuse, OfTrianglesThatAreNotThereIsAStatus) {
   }
 }
 
+TEST_F(Misuse, OfVoxelsThatAreNotThereIsAStatus) {
+  const SphereTree alone = build_tree(icosphere(2, 2)), exact = ball(0.25, true);
+  struct Counter final : LeafPairStream {
+    bool take(std::span<const LeafPair>) noexcept override { return ++takes < 0; }
+    int takes = 0;
+  };
+  for (const auto& [fixed, moving] :
+       {std::pair{&alone, &alone}, {&alone, &exact}, {&exact, &alone}}) {
+    Query query(*fixed, *moving, {.front_pairs = 1 << 10});
+    EXPECT_TRUE(query.has_triangles());
+    EXPECT_EQ(query.policy(), SpherePolicy::kSimple);
+    Counter counter;
+    ContactManifold manifold(exact, exact, SpherePolicy::kSlab);
+    for (const QueryResult& result :
+         {query.leaf_pairs(pose_, {}), query.leaf_pairs(pose_, {}, {.tests = 10}),
+          query.leaf_pairs(pose_, counter), query.contacts(pose_, manifold)}) {
+      EXPECT_EQ(result.status, QueryStatus::kNoVoxels);
+      EXPECT_FALSE(result.complete);
+      EXPECT_EQ(result.leaf_pairs, 0u);
+    }
+    EXPECT_EQ(counter.takes, 0);
+    EXPECT_STREQ(to_string(QueryStatus::kNoVoxels), "no-voxels");
+    query.forget();
+    EXPECT_EQ(query.intersects(pose_).answer, Answer::kYes);
+
+    const auto no_manifold =
+        error_of([&] { ContactManifold(*fixed, *moving, SpherePolicy::kSimple); });
+    ASSERT_TRUE(no_manifold);
+    EXPECT_EQ(no_manifold->code(), ErrorCode::kVoxelsMissing);
+    EXPECT_NE(std::string(no_manifold->what()).find("build it with a voxel size"),
+              std::string::npos);
+    for (const SpherePolicy policy : kSpherePolicies) {
+      const auto no_spheres = error_of([&] { Query(*fixed, *moving, {.policy = policy}); });
+      ASSERT_TRUE(no_spheres);
+      EXPECT_EQ(no_spheres->code(), ErrorCode::kPolicyMissing);
+      EXPECT_NE(std::string(no_spheres->what()).find("build it with a voxel size"),
+                std::string::npos);
+      EXPECT_EQ(error_name([&] { ReferenceQuery(*fixed, *moving, policy); }), "policy-missing");
+    }
+  }
+  EXPECT_EQ(error_name([&] { Query(alone, tree_); }), "voxels-missing");
+  EXPECT_EQ(error_name([&] { Query(tree_, alone); }), "voxels-missing");
+}
+
+// No memory is reserved for leaf pairs that cannot be asked for.
+TEST_F(Misuse, OfVoxelsThatAreNotThereTakesLessMemory) {
+  const SphereTree alone = build_tree(icosphere(2, 2)), exact = ball(0.25, true);
+  for (const int workers : {1, 2}) {
+    const QueryOptions options{.workers = workers, .front_pairs = 1 << 12};
+    const std::size_t with = Query(exact, exact, options).bytes();
+    for (const auto& [fixed, moving] :
+         {std::pair{&alone, &alone}, {&alone, &exact}, {&exact, &alone}}) {
+      const std::size_t front = options.front_pairs * sizeof(LeafPair);
+      EXPECT_LT(Query(*fixed, *moving, options).bytes() + front, with) << workers;
+    }
+  }
+}
+
 TEST_F(Misuse, OfAPoseIsAStatusOfEveryVerb) {
   const SphereTree exact = ball(0.25, true);
   Query query(exact, exact);

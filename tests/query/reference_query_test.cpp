@@ -138,11 +138,11 @@ TEST(ExactPairs, SlabsMeetToTheLastBit) {
   const TriangleMesh square = open_strip(1);
   const SphereTree tree = tree_of(square, 1);
   const ExactBody body(square, tree);
-  const Slab slab = parts_of(tree).saved_slab(0, 0, 0);
+  const Slab slab = voxels_of(tree).saved_slab(0, 0, 0);
   ASSERT_EQ(slab.normal.cwiseAbs(), Eigen::Vector3d(0, 0, 126.0 / 128));
   ASSERT_EQ(slab.offset, 0);
   const mpq_class reach =
-      mpq_class(slab.half) + mpq_class(parts_of(tree).saved_ball(0, 0, 0).radius);
+      mpq_class(slab.half) + mpq_class(voxels_of(tree).saved_ball(0, 0, 0).radius);
   for (const double pad : {0.0, 0x1p-20, -0x1p-20}) {
     const auto meet = [&](SpherePolicy policy, double gap) {
       const ExactPair above(body, body, shift({0, 0, gap})), below(body, body, shift({0, 0, -gap}));

@@ -29,9 +29,9 @@ std::vector<std::vector<Piece>> pieces_in_leaves(const TriangleMesh& mesh, const
   const auto rounded = [](const ExactPoint& p) {
     return Eigen::Vector3d(p[0].get_d(), p[1].get_d(), p[2].get_d());
   };
-  const Lattice& lattice = parts_of(tree).lattice;
+  const Lattice& lattice = voxels_of(tree).lattice;
   std::vector<std::vector<Piece>> leaves;
-  for (const std::uint64_t code : parts_of(tree).octree.codes(0)) {
+  for (const std::uint64_t code : voxels_of(tree).octree.codes(0)) {
     const ExactBox cube = grown(node_cube(lattice, 0, code), exact_pad(lattice));
     const Eigen::AlignedBox3d box(rounded(cube.low), rounded(cube.high));
     std::vector<Piece>& leaf = leaves.emplace_back();

@@ -33,13 +33,9 @@ const SphereTree& tree_of_all_masks() {
       nodes = 0;
       for (const std::uint8_t mask : here) nodes += static_cast<unsigned>(std::popcount(mask));
     }
-    return tree_from({Lattice{{0, 0, 0}, 0.3, 32, 5},
-                      LinearOctree(std::move(masks)),
-                      Orientation::kOutward,
-                      std::vector<PackedNormal>(nodes),
-                      {},
-                      std::nullopt,
-                      std::nullopt});
+    return tree_from({TreeVoxels{Lattice{{0, 0, 0}, 0.3, 32, 5}, LinearOctree(std::move(masks)),
+                                 std::vector<PackedNormal>(nodes)},
+                      std::nullopt, Orientation::kOutward});
   }();
   return tree;
 }
@@ -52,7 +48,7 @@ void for_each_parent(SpherePolicy policy, const Body& body) {
   const SearchPlan plan(tree, tree, policy);
   for (int level = tree.depth() - 1; level >= 0; --level) {
     const SearchStep& step = plan.steps()[static_cast<std::size_t>(tree.depth() - 1 - level)];
-    const std::uint32_t children = parts_of(tree).octree.node_count(level);
+    const std::uint32_t children = voxels_of(tree).octree.node_count(level);
     std::uint32_t child = 0;
     for (std::uint32_t parent = 0; child < children; ++parent) {
       body(step, level, parent, child);
@@ -62,20 +58,20 @@ void for_each_parent(SpherePolicy policy, const Body& body) {
 }
 
 TEST(ImplicitLanes, AreTheNestedBallsRoundedUp) {
-  const TreeParts& parts = parts_of(tree_of_all_masks());
+  const TreeVoxels& voxels = voxels_of(tree_of_all_masks());
   for (const SpherePolicy policy : {SpherePolicy::kSimple, SpherePolicy::kTable}) {
     const auto lanes = std::make_unique<MovingLanes>();
     int codes_of = -1;
     std::vector<std::uint64_t> codes;
     for_each_parent(
         policy, [&](const SearchStep& step, int level, std::uint32_t parent, std::uint32_t first) {
-          if (codes_of != level) codes = parts.octree.codes(codes_of = level);
+          if (codes_of != level) codes = voxels.octree.codes(codes_of = level);
           const std::uint32_t count = decode(step.moving, parent, *lanes, 3);
           for (std::uint32_t i = 0; i < count; ++i) {
             const std::uint32_t child = first + i;
             ASSERT_EQ(lanes->id[3 + i], child);
-            const Ball ball = parts.nested_ball(policy, level, child,
-                                                cube_centre(parts.lattice, level, codes[child]));
+            const Ball ball = voxels.nested_ball(policy, level, child,
+                                                 cube_centre(voxels.lattice, level, codes[child]));
             ASSERT_GE(double{lanes->lane[kRadius][3 + i]}, ball.radius);
             ASSERT_LE(double{lanes->lane[kRadius][3 + i]}, ball.radius * (1 + 0x1p-23));
             for (const Lane lane : {kX, kY, kZ}) {

@@ -33,7 +33,7 @@ Eigen::Vector3d cube_centre(const LinearOctree& octree, std::uint32_t leaf) {
 
 Bounds bounds_of(const SphereTree& tree, SpherePolicy policy, std::uint32_t leaf) {
   if (!is_implicit(policy)) return read_bounds(tree, policy, leaf);
-  return {parts_of(tree).ball(policy, 0, leaf, cube_centre(parts_of(tree).octree, leaf)), {}};
+  return {voxels_of(tree).ball(policy, 0, leaf, cube_centre(voxels_of(tree).octree, leaf)), {}};
 }
 
 }  // namespace
@@ -52,11 +52,10 @@ ShapeCases::ShapeCases(const std::string& shape)
 
 void check_voxels(const SphereTree& tree, StabilityCase& voxels) {
   constexpr int kParts = 16;  // of a pad: the step of the measurement
-  const Lattice& lattice = parts_of(tree).lattice;
-  const std::vector<std::uint64_t> codes = parts_of(tree).octree.codes(0);
-  const LeafTriangles& kept = *parts_of(tree).triangles;
-  const TriangleMesh& mesh = kept.mesh;
-  const TriangleLists& lists = kept.lists;
+  const Lattice& lattice = voxels_of(tree).lattice;
+  const std::vector<std::uint64_t> codes = voxels_of(tree).octree.codes(0);
+  const TriangleMesh& mesh = parts_of(tree).triangles->mesh;
+  const TriangleLists& lists = voxels_of(tree).lists;
   std::vector<std::vector<std::uint64_t>> found(mesh.triangles.size());
   for (std::size_t voxel = 0; voxel < codes.size(); ++voxel) {
     for (const std::uint32_t t : lists[voxel]) found[t].push_back(codes[voxel]);

@@ -51,9 +51,9 @@ class Scaled {
         fixed_(tree(icosphere(1, 1))),
         moving_(tree(box({-0.75, -0.5, -0.625}, {0.75, 0.5, 0.625}))) {
     for (const SphereTree* tree : {&fixed_, &moving_}) {
-      for (const double x : parts_of(*tree).lattice.corner) numbers_.add(x, 1);
-      for (const std::uint64_t code : parts_of(*tree).octree.codes(0)) numbers_.count(code);
-      for (const PackedNormal normal : parts_of(*tree).normals) numbers_.count(normal.word());
+      for (const double x : voxels_of(*tree).lattice.corner) numbers_.add(x, 1);
+      for (const std::uint64_t code : voxels_of(*tree).octree.codes(0)) numbers_.count(code);
+      for (const PackedNormal normal : voxels_of(*tree).normals) numbers_.count(normal.word());
       numbers_.add(tree->bounding_radius(), 1);
     }
   }

@@ -248,7 +248,7 @@ TEST(ShapeLimits, HoldWithManyTrianglesInOnePlace) {
   EXPECT_EQ(error_name([&] { static_cast<void>(triangle_tree_of(mesh, 1e-4, nullptr, 1 << 22)); }),
             "memory-limit");
   const SphereTree once = triangle_tree_of(coincident(1), 1.9);
-  answers.sample(parts_of(tree).octree.codes(0) == parts_of(once).octree.codes(0) ? 0 : 1, 0,
+  answers.sample(voxels_of(tree).octree.codes(0) == voxels_of(once).octree.codes(0) ? 0 : 1, 0,
                  "voxels");
 
   const SphereTree other =

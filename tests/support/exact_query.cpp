@@ -33,12 +33,12 @@ std::vector<std::uint64_t> leaf_codes(const LinearOctree& octree) {
 
 ExactBody::ExactBody(const TriangleMesh& mesh, const SphereTree& tree)
     : tree_(tree), voxel_size_(tree.voxel_size()) {
-  const Lattice& lattice = parts_of(tree).lattice;
+  const Lattice& lattice = voxels_of(tree).lattice;
   const mpq_class root_centre(lattice.root_centre());
   for (std::size_t i = 0; i < 3; ++i) {
     origin_[i] = mpq_class(lattice.corner[i]) + root_centre * voxel_size_;
   }
-  for (const std::uint64_t code : leaf_codes(parts_of(tree).octree)) {
+  for (const std::uint64_t code : leaf_codes(voxels_of(tree).octree)) {
     const ExactBox cube = node_cube(lattice, 0, code);
     Leaf& leaf = leaves_.emplace_back();
     leaf.cube_centre = mpq_class(1, 2) * (cube.low + cube.high) - origin_;
@@ -72,7 +72,7 @@ ExactBody::ExactBody(const TriangleMesh& mesh, const SphereTree& tree)
 
 // From the description of the blocks.
 void ExactBody::unpack_bounds() {
-  const std::vector<std::uint64_t> codes = leaf_codes(parts_of(tree_).octree);
+  const std::vector<std::uint64_t> codes = leaf_codes(voxels_of(tree_).octree);
   const mpq_class unit = voxel_size_ / 32768, slab_unit = voxel_size_ / 256;
   std::size_t parent = 0;
   int slot = 0;
@@ -82,7 +82,7 @@ void ExactBody::unpack_bounds() {
       slot = 0;
     }
     Bound& bound = leaves_[leaf].bound;
-    const PackedBall ball = parts_of(tree_).balls(0)[parent][slot];
+    const PackedBall ball = voxels_of(tree_).balls(0)[parent][slot];
     bound.centre = leaves_[leaf].cube_centre;  // of the parent's cube: half an edge away, or none
     for (std::size_t i = 0; i < 3 && tree_.depth() > 0; ++i) {
       bound.centre[i] += ((codes[leaf] >> i & 1) != 0 ? -1 : 1) * voxel_size_ / 2;
@@ -92,7 +92,7 @@ void ExactBody::unpack_bounds() {
     bound.radius = ball.r * unit;
     bound.rounded_centre = rounded(bound.centre);
     if (!tree_.has(SpherePolicy::kSlab)) continue;
-    const PackedSlab slab = parts_of(tree_).slabs(0)[parent][slot];
+    const PackedSlab slab = voxels_of(tree_).slabs(0)[parent][slot];
     bound.normal = mpq_class(1, 128) *
                    ExactPoint{{mpq_class(slab.nx), mpq_class(slab.ny), mpq_class(slab.nz)}};
     bound.offset = slab.offset * slab_unit;

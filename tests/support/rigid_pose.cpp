@@ -43,7 +43,7 @@ bool is_rough(const Rows& r) {
 
 // The root cube's centre in mesh coordinates.
 ExactPoint origin_of(const SphereTree& tree) {
-  const Lattice& lattice = parts_of(tree).lattice;
+  const Lattice& lattice = voxels_of(tree).lattice;
   const mpq_class half = mpq_class(lattice.voxel_size) * (std::uint64_t{1} << lattice.depth) / 2;
   ExactPoint origin;
   for (std::size_t i = 0; i < 3; ++i) origin[i] = lattice.corner[i] + half;

@@ -19,21 +19,20 @@ TreeFile::TreeFile(const SphereTree& tree) : bytes(file_of(tree)) {
   };
   const std::size_t leaf_count = tree.leaf_count();
   nodes = kName + tree.source().name.size();
-  normals = octree(nodes, parts_of(tree).octree, leaves, masks);
+  normals = octree(nodes, voxels_of(tree).octree, leaves, masks);
   balls = normals + 4 * leaf_count;
-  slabs = balls + 8 * parts_of(tree).octree.node_count();
-  counts = slabs + 5 * parts_of(tree).octree.node_count();
+  slabs = balls + 8 * voxels_of(tree).octree.node_count();
+  counts = slabs + 5 * voxels_of(tree).octree.node_count();
   vertices = counts + 24;
-  const LeafTriangles& kept = *parts_of(tree).triangles;
-  const TriangleMesh& mesh = kept.mesh;
-  const TriangleLists& lists = kept.lists;
+  const TriangleMesh& mesh = parts_of(tree).triangles->mesh;
+  const TriangleLists& lists = voxels_of(tree).lists;
   triangles = vertices + 24 * mesh.vertices.size();
   list_begins = triangles + 12 * mesh.triangles.size();
   list_ids = list_begins + 4 * (leaf_count + 1);
   proximity_depth = list_ids + 4 * lists.ids.size();
   proximity_nodes = proximity_depth + 4;
   const std::size_t end =
-      octree(proximity_nodes, parts_of(tree).proximity->octree, proximity_leaves, proximity_masks);
+      octree(proximity_nodes, voxels_of(tree).proximity->octree, proximity_leaves, proximity_masks);
   if (end != bytes.size()) throw std::logic_error("the file is not as its format is described");
 }
 

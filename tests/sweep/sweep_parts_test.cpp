@@ -266,7 +266,12 @@ TEST_F(SweepParts, NeedWhatTheQuestionsNeed) {
   const Sweep slab = sweep_with("tolerance", "spheres = \"slab\"\ntolerance");
   EXPECT_EQ(error_name([&] { static_cast<void>(slab.open_folder(dir_.path() / "slab")); }),
             "policy-missing");
+  write_tree(build_tree(icosphere(1, 1)), dir_.path() / "moving.ist");
+  const Sweep felt = sweep_with("tolerance", "tolerance");
+  EXPECT_EQ(error_name([&] { static_cast<void>(felt.open_folder(dir_.path() / "felt")); }),
+            "voxels-missing");
   // Nothing stays that would refuse the sweep once its trees are right.
+  EXPECT_FALSE(std::filesystem::exists(dir_.path() / "felt"));
   EXPECT_FALSE(std::filesystem::exists(dir_.path() / "deep"));
   EXPECT_FALSE(std::filesystem::exists(dir_.path() / "slab"));
 }

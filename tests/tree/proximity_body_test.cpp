@@ -32,12 +32,12 @@ SphereTree ball_with_proximity() {
 // The centre of each proximity cell, from where the lattice says that cells are.
 std::vector<Vector3d> cells_of(const SphereTree& tree) {
   std::vector<Vector3d> centres;
-  for (const std::uint64_t code : parts_of(tree).proximity->octree.codes(0)) {
+  for (const std::uint64_t code : voxels_of(tree).proximity->octree.codes(0)) {
     const auto cell = morton_decode(code);
     Vector3d centre;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       centre[static_cast<Eigen::Index>(axis)] =
-          parts_of(tree).lattice.corner[axis] +
+          voxels_of(tree).lattice.corner[axis] +
           (cell[axis] - double{ProximityTree::kMargin} + 0.5) * kSize;
     }
     centres.push_back(centre);
@@ -143,8 +143,9 @@ TEST(ProximityBody, KeepsTheMeshCoordinatesWhereItIsDeeper) {
   EXPECT_EQ(tree.depth(), 3);
   EXPECT_EQ(body.depth(), 4);
   EXPECT_EQ(body.voxel_size(), 0.25);
-  for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(parts_of(body).lattice.corner[axis], -0.5);
-  EXPECT_EQ(parts_of(body).lattice.cells, parts_of(tree).lattice.cells + 4);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    EXPECT_EQ(voxels_of(body).lattice.corner[axis], -0.5);
+  EXPECT_EQ(voxels_of(body).lattice.cells, voxels_of(tree).lattice.cells + 4);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <string>
@@ -71,23 +72,19 @@ TEST(SphereTree, NoMaskReachesFartherThanItsReach) {
           nodes = 0;
           for (const std::uint8_t m : here) nodes += static_cast<unsigned>(std::popcount(m));
         }
-        TreeParts parts{Lattice{{0, 0, 0}, voxel_size, 8, 3},
-                        LinearOctree(masks),
-                        Orientation::kOutward,
-                        std::vector<PackedNormal>(nodes),
-                        {},
-                        std::nullopt,
-                        std::nullopt};
-        const auto tree = tree_from(std::move(parts));
+        const auto tree =
+            tree_from({TreeVoxels{Lattice{{0, 0, 0}, voxel_size, 8, 3}, LinearOctree(masks),
+                                  std::vector<PackedNormal>(nodes)},
+                       std::nullopt, Orientation::kOutward});
         for (const auto& ball : level_spheres(tree, SpherePolicy::kTable, 3)) {
           const mpq_class room = mpq_class(tree.bounding_radius()) - mpq_class(ball.radius);
           ASSERT_LE(test::square(test::exact(ball.centre)), room * room) << mask;
         }
         for (int level = 0; level <= 3; ++level) {
-          const std::vector<std::uint64_t> codes = parts_of(tree).octree.codes(level);
+          const std::vector<std::uint64_t> codes = voxels_of(tree).octree.codes(level);
           for (std::uint32_t node = 0; node < codes.size(); ++node) {
-            const Eigen::Vector3d at = cube_centre(parts_of(tree).lattice, level, codes[node]);
-            const Ball ball = parts_of(tree).nested_ball(SpherePolicy::kTable, level, node, at);
+            const Eigen::Vector3d at = cube_centre(voxels_of(tree).lattice, level, codes[node]);
+            const Ball ball = voxels_of(tree).nested_ball(SpherePolicy::kTable, level, node, at);
             ASSERT_LE(ball.centre.norm() + ball.radius, tree.bounding_radius() * (1 + 1e-15))
                 << mask << ' ' << level;
           }
@@ -105,18 +102,18 @@ TEST(SphereTree, ImplicitBallsAreNested) {
   std::size_t pairs = 0;
   for (std::uint64_t seed = 1; seed <= test::samples(std::uint64_t{3}); ++seed) {
     const SphereTree tree = tree_of(random_mesh(seed, 4), 0.11);
-    const TreeParts& parts = parts_of(tree);
-    const std::vector<std::uint64_t> leaves = parts.octree.codes(0);
+    const TreeVoxels& voxels = voxels_of(tree);
+    const std::vector<std::uint64_t> leaves = voxels.octree.codes(0);
     for (const SpherePolicy policy : {SpherePolicy::kSimple, SpherePolicy::kTable}) {
       for (int level = 1; level <= tree.depth(); ++level) {
-        const std::vector<std::uint64_t> codes = parts.octree.codes(level);
+        const std::vector<std::uint64_t> codes = voxels.octree.codes(level);
         std::uint32_t node = 0;
         for (std::uint32_t leaf = 0; leaf < leaves.size(); ++leaf, ++pairs) {
           node += codes[node] != leaves[leaf] >> 3 * level;
-          const Ball outer = parts.nested_ball(policy, level, node,
-                                               cube_centre(parts.lattice, level, codes[node])),
-                     inner = parts.nested_ball(policy, 0, leaf,
-                                               cube_centre(parts.lattice, 0, leaves[leaf]));
+          const Ball outer = voxels.nested_ball(policy, level, node,
+                                                cube_centre(voxels.lattice, level, codes[node])),
+                     inner = voxels.nested_ball(policy, 0, leaf,
+                                                cube_centre(voxels.lattice, 0, leaves[leaf]));
           ASSERT_LE((inner.centre - outer.centre).norm() + inner.radius,
                     outer.radius + 1e-15 * tree.bounding_radius())
               << to_string(policy) << ", level " << level << ", leaf " << leaf;
@@ -147,15 +144,15 @@ TEST(SphereTree, OfOneVoxelIsOneSphereAPolicy) {
     options.keep_triangles = true;
     const SphereTree tree = build_tree(mesh, options);
     EXPECT_EQ(tree.depth(), 0);
-    EXPECT_EQ(parts_of(tree).octree.node_count(), 1u);
-    EXPECT_EQ(parts_of(tree).triangles->lists.ids.size(), mesh.triangles.size());
+    EXPECT_EQ(voxels_of(tree).octree.node_count(), 1u);
+    EXPECT_EQ(voxels_of(tree).lists.ids.size(), mesh.triangles.size());
     expect_within_reach(tree);
     for (const SpherePolicy policy : kSpherePolicies) {
       const SavedSpheres saved = save_spheres(tree, policy);
       ASSERT_EQ(saved.size(), 1u);
       ASSERT_EQ(saved[0].size(), 1u);
     }
-    EXPECT_EQ(parts_of(tree).ball(SpherePolicy::kTable, 0, 0, {0, 0, 0}).radius, 2.5 * kSqrt3);
+    EXPECT_EQ(voxels_of(tree).ball(SpherePolicy::kTable, 0, 0, {0, 0, 0}).radius, 2.5 * kSqrt3);
     EXPECT_EQ(level_statistics(tree).size(), 1u);
   }
 }
@@ -168,7 +165,7 @@ TEST(SphereTree, APowerOfTwoScalesEverythingExactly) {
     TriangleMesh scaled = mesh;
     for (Eigen::Vector3d& vertex : scaled.vertices) vertex *= factor;
     const SphereTree other = tree_of(scaled, 0.17 * factor);
-    ASSERT_EQ(parts_of(other).octree.codes(0), parts_of(tree).octree.codes(0));
+    ASSERT_EQ(voxels_of(other).octree.codes(0), voxels_of(tree).octree.codes(0));
     EXPECT_EQ(other.bounding_radius(), tree.bounding_radius() * factor);
     for (const SpherePolicy policy : kSpherePolicies) {
       const SavedSpheres a = save_spheres(tree, policy), b = save_spheres(other, policy);
@@ -191,19 +188,19 @@ TEST(SphereTree, UnpacksItsBounds) {
   };
   for (int level = 0; level <= tree.depth(); ++level) {
     const mpq_class edge = mpq_class(voxel_size) * (1 << level), unit = edge / 32768;
-    for (std::uint32_t parent = 0; parent < parts_of(tree).balls(level).size(); ++parent) {
-      const OctreeNode& from = parts_of(tree).octree.nodes(level + 1)[parent];
-      for (int slot = 0; slot < parts_of(tree).octree.child_count(level + 1, parent); ++slot) {
-        const PackedBall packed = parts_of(tree).balls(level)[parent][slot];
-        const Ball ball = parts_of(tree).saved_ball(level, parent, slot);
+    for (std::uint32_t parent = 0; parent < voxels_of(tree).balls(level).size(); ++parent) {
+      const OctreeNode& from = voxels_of(tree).octree.nodes(level + 1)[parent];
+      for (int slot = 0; slot < voxels_of(tree).octree.child_count(level + 1, parent); ++slot) {
+        const PackedBall packed = voxels_of(tree).balls(level)[parent][slot];
+        const Ball ball = voxels_of(tree).saved_ball(level, parent, slot);
         const int centre[] = {packed.x, packed.y, packed.z};
         for (int i = 0; i < 3; ++i) {
           const mpq_class origin = mpq_class(double{from.centre[i]}) * mpq_class(voxel_size);
           expect_near(ball.centre[i], origin + centre[i] * unit);
         }
         expect_near(ball.radius, packed.r * unit);
-        const PackedSlab thin = parts_of(tree).slabs(level)[parent][slot];
-        const Slab slab = parts_of(tree).saved_slab(level, parent, slot);
+        const PackedSlab thin = voxels_of(tree).slabs(level)[parent][slot];
+        const Slab slab = voxels_of(tree).saved_slab(level, parent, slot);
         EXPECT_EQ(128 * slab.normal, Eigen::Vector3d(thin.nx, thin.ny, thin.nz));
         expect_near(slab.offset, thin.offset * edge / 256);
         expect_near(slab.half, thin.half * edge / 256);
@@ -238,12 +235,63 @@ TEST(SphereTree, SpheresThatItLacksAreNamedWithTheRemedy) {
   expect_has_up_to(of(SpherePolicy::kSlab), SpherePolicy::kSlab);
 }
 
+TEST(SphereTree, WithoutVoxelsSaysSo) {
+  const SphereTree tree = build_tree(test::box({1, 2, 3}, {3, 8, 4}));
+  EXPECT_FALSE(tree.has_voxels());
+  EXPECT_EQ(tree.voxel_size(), 0);
+  EXPECT_EQ(tree.leaf_count(), 0u);
+  EXPECT_EQ(tree.depth(), 0);
+  EXPECT_TRUE(tree.leaf_centres().empty());
+  EXPECT_TRUE(level_statistics(tree).empty());
+  EXPECT_FALSE(tree.has_proximity());
+  EXPECT_EQ(tree.tightest(), SpherePolicy::kSimple);
+  EXPECT_EQ(tree.orientation(), Orientation::kOutward);
+  EXPECT_EQ(tree.origin(), Eigen::Vector3d(2, 5, 3.5));
+  ASSERT_TRUE(tree.triangles());
+  EXPECT_EQ(tree.self_intersections(), 0u);
+  for (const SpherePolicy policy : kSpherePolicies) {
+    EXPECT_FALSE(tree.has(policy)) << to_string(policy);
+    EXPECT_EQ(tree.largest_leaf_radius(policy), 0) << to_string(policy);
+    const auto error = test::error_of([&] { tree.require(policy, "upper"); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ErrorCode::kPolicyMissing);
+    EXPECT_NE(std::string(error->what()).find("upper: the tree holds no voxels"),
+              std::string::npos);
+    EXPECT_NE(std::string(error->what()).find("build it with a voxel size"), std::string::npos);
+  }
+  EXPECT_TRUE(tree_of(test::box({1, 2, 3}, {3, 8, 4}), 0.5).has_voxels());
+}
+
+// |vertex - origin| <= radius in rationals, and the radius is no larger than it need be.
+TEST(SphereTree, WithoutVoxelsItsRadiusHoldsAllVertices) {
+  for (std::uint64_t seed = 1; seed <= test::samples(std::uint64_t{20}); ++seed) {
+    TriangleMesh mesh = random_mesh(seed, 6);
+    const double scale = std::ldexp(1.0, static_cast<int>(seed % 60) - 30);
+    for (Eigen::Vector3d& vertex : mesh.vertices) {
+      vertex = scale * vertex + Eigen::Vector3d(0, scale * 1e6, 0);
+    }
+    mesh.vertices.emplace_back(1e9 * scale, 0, 0);  // which no triangle names
+    const SphereTree tree = build_tree(mesh);
+    const mpq_class radius = tree.bounding_radius();
+    mpq_class farthest = 0;
+    for (const Triangle& triangle : tree.triangles()->triangles) {
+      for (const std::uint32_t vertex : triangle) {
+        const test::ExactPoint from =
+            test::exact(tree.triangles()->vertices[vertex]) - test::exact(tree.origin());
+        farthest = std::max(farthest, test::square(from));
+      }
+    }
+    ASSERT_LE(farthest, radius * radius) << seed;
+    ASSERT_GE(farthest * mpq_class(1 + 1e-14), radius * radius) << seed;
+  }
+}
+
 TEST(TreeStatistics, AddUpWhatTheLevelsHold) {
   const SphereTree tree = tree_of(test::icosphere(2, 1), 0.1);
   const auto levels = level_statistics(tree);
   ASSERT_EQ(levels.size(), static_cast<std::size_t>(tree.depth()) + 1);
   for (const LevelStatistics& level : levels) {
-    EXPECT_EQ(level.nodes, parts_of(tree).octree.node_count(level.level));
+    EXPECT_EQ(level.nodes, voxels_of(tree).octree.node_count(level.level));
     EXPECT_EQ(level.edge, 0.1 * (1 << level.level));
     ASSERT_EQ(level.spheres.size(), kSpherePolicies.size());
     // The circumsphere of a cube of edge e: (√3/2) π e³.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -266,6 +268,80 @@ TEST(DamagedTree, WithAnyByteChangedAndSealedItIsATreeOrAnError) {
       (void)error_of_bytes(file.bytes);
     }
   }
+}
+
+// The file of a tree without voxels, and where its triangles stand.
+struct FileWithoutVoxels {
+  FileWithoutVoxels() : bytes(test::file_of(build_tree(test::box({0, 0, 0}, {2, 1, 1})))) {}
+  template <typename T>
+  [[nodiscard]] std::string with(std::size_t at, T value) const {
+    std::string damaged = bytes;
+    std::memcpy(damaged.data() + at, &value, sizeof value);
+    test::seal(damaged);
+    return damaged;
+  }
+  static constexpr std::size_t kCounts = TreeFile::kName, kVertices = kCounts + 24,
+                               kTriangles = kVertices + 8 * 24, kEnd = kTriangles + 12 * 12;
+  std::string bytes;
+};
+
+TEST(DamagedTree, WithoutVoxelsCutOrChangedItIsAnError) {
+  const FileWithoutVoxels file;
+  ASSERT_EQ(file.bytes.size(), FileWithoutVoxels::kEnd);
+  ASSERT_EQ(error_of_bytes(file.bytes), "none");
+  for (std::size_t length = TreeFile::kBody; length < file.bytes.size(); ++length) {
+    std::string cut = file.bytes.substr(0, length);
+    ASSERT_EQ(error_of_bytes(cut), "tree-truncated") << length;
+    test::seal(cut);
+    ASSERT_EQ(error_of_bytes(cut), "tree-truncated") << length;
+  }
+  std::string bytes = file.bytes;
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+    const auto flip = static_cast<char>(1 << bit % 8);
+    bytes[bit / 8] = static_cast<char>(bytes[bit / 8] ^ flip);
+    ASSERT_NE(error_of_bytes(bytes), "none") << bit;
+    bytes[bit / 8] = static_cast<char>(bytes[bit / 8] ^ flip);
+  }
+  std::string longer = file.bytes + '\0';
+  test::seal(longer);
+  EXPECT_EQ(error_of_bytes(longer), "tree-corrupt");
+}
+
+TEST(DamagedTree, WithoutVoxelsEachFieldIsChecked) {
+  const FileWithoutVoxels file;
+  const auto expect_corrupt = [](const std::string& bytes, const char* field) {
+    EXPECT_EQ(error_of_bytes(bytes), "tree-corrupt") << field;
+  };
+  expect_corrupt(file.with(TreeFile::kCorner, 1.0), "corner");
+  expect_corrupt(file.with(TreeFile::kCorner, kNaN), "corner");
+  expect_corrupt(file.with(TreeFile::kCorner, -0.0), "corner");
+  EXPECT_NE(error_of_bytes(file.with(TreeFile::kVoxelSize, -0.0)), "none");
+  EXPECT_NE(error_of_bytes(file.with(TreeFile::kCells, 1u)), "none");
+  expect_corrupt(file.with(TreeFile::kDepth, 1u), "depth");
+  expect_corrupt(file.with(TreeFile::kOrientation, 7u), "orientation");
+  for (const std::uint32_t sections : {0u, 1u, 3u, 6u, 15u, 18u}) {
+    expect_corrupt(file.with(TreeFile::kSections, sections), "sections");
+  }
+  expect_corrupt(file.with(FileWithoutVoxels::kVertices, kNaN), "vertex");
+  expect_corrupt(file.with(FileWithoutVoxels::kVertices, 1e300), "extent");
+  expect_corrupt(file.with(FileWithoutVoxels::kTriangles, 8u), "index");
+  std::string flat = file.bytes;
+  std::fill(flat.begin() + FileWithoutVoxels::kVertices,
+            flat.begin() + FileWithoutVoxels::kTriangles, '\0');
+  test::seal(flat);
+  expect_corrupt(flat, "a mesh without an extent");
+  for (std::size_t at = 0; at < 24; at += 8) {
+    const std::string huge = file.with(FileWithoutVoxels::kCounts + at, std::uint64_t{1} << 40);
+    EXPECT_EQ(error_of_bytes(huge), "tree-truncated") << at;
+    const std::size_t largest = test::largest_allocation([&] { (void)error_of_bytes(huge); });
+    EXPECT_LE(largest, file.bytes.size() + 4096) << at;
+  }
+  // List entries take the room of triangles.
+  std::string entries = file.with(FileWithoutVoxels::kCounts + 8, std::uint64_t{11});
+  const std::uint64_t three = 3;
+  std::memcpy(entries.data() + FileWithoutVoxels::kCounts + 16, &three, sizeof three);
+  test::seal(entries);
+  expect_corrupt(entries, "list entries");
 }
 
 TEST(DamagedTree, TrailingBytesAreAnError) {

@@ -35,30 +35,30 @@ void expect_equal(const LinearOctree& a, const LinearOctree& b) {
 }
 
 void expect_equal(const SphereTree& a, const SphereTree& b) {
-  EXPECT_EQ(parts_of(a).lattice, parts_of(b).lattice);
+  EXPECT_EQ(voxels_of(a).lattice, voxels_of(b).lattice);
   EXPECT_EQ(a.orientation(), b.orientation());
   EXPECT_EQ(a.bounding_radius(), b.bounding_radius());
   EXPECT_EQ(a.source(), b.source());
-  expect_equal(parts_of(a).octree, parts_of(b).octree);
-  expect_same_bytes(std::span(parts_of(a).normals), std::span(parts_of(b).normals));
+  expect_equal(voxels_of(a).octree, voxels_of(b).octree);
+  expect_same_bytes(std::span(voxels_of(a).normals), std::span(voxels_of(b).normals));
   ASSERT_EQ(a.tightest(), b.tightest());
   for (int level = 0; level <= a.depth(); ++level) {
     if (a.has(SpherePolicy::kTight))
-      expect_same_bytes(parts_of(a).balls(level), parts_of(b).balls(level));
+      expect_same_bytes(voxels_of(a).balls(level), voxels_of(b).balls(level));
     if (a.has(SpherePolicy::kSlab))
-      expect_same_bytes(parts_of(a).slabs(level), parts_of(b).slabs(level));
+      expect_same_bytes(voxels_of(a).slabs(level), voxels_of(b).slabs(level));
   }
   EXPECT_EQ(a.largest_leaf_radius(a.tightest()), b.largest_leaf_radius(b.tightest()));
   ASSERT_EQ(a.triangles() != nullptr, b.triangles() != nullptr);
   if (a.triangles()) {
     EXPECT_EQ(parts_of(a).triangles->mesh.vertices, parts_of(b).triangles->mesh.vertices);
     EXPECT_EQ(parts_of(a).triangles->mesh.triangles, parts_of(b).triangles->mesh.triangles);
-    EXPECT_EQ(parts_of(a).triangles->lists.first, parts_of(b).triangles->lists.first);
-    EXPECT_EQ(parts_of(a).triangles->lists.ids, parts_of(b).triangles->lists.ids);
+    EXPECT_EQ(voxels_of(a).lists.first, voxels_of(b).lists.first);
+    EXPECT_EQ(voxels_of(a).lists.ids, voxels_of(b).lists.ids);
   }
   ASSERT_EQ(a.has_proximity(), b.has_proximity());
-  if (parts_of(a).proximity)
-    expect_equal(parts_of(a).proximity->octree, parts_of(b).proximity->octree);
+  if (voxels_of(a).proximity)
+    expect_equal(voxels_of(a).proximity->octree, voxels_of(b).proximity->octree);
 }
 
 SphereTree tree_of(const TriangleMesh& mesh, double voxel_size, unsigned sections) {
@@ -83,6 +83,28 @@ TEST(TreeFile, EveryCombinationOfSectionsComesBackAsItWas) {
       expect_equal(tree, back);
       EXPECT_EQ(test::file_of(back), bytes);
     }
+  }
+}
+
+TEST(TreeFile, WithoutVoxelsComesBackAsItWas) {
+  TriangleMesh strip = test::open_strip(3);
+  strip.frame = PatientFrame::kLps;
+  for (const TriangleMesh& mesh : {test::icosphere(2, 1), strip}) {
+    BuildOptions options;
+    options.source = {"upper jaw.stl", 7, LengthUnit::kMillimetre};
+    const SphereTree tree = build_tree(mesh, options);
+    const std::string bytes = test::file_of(tree);
+    const SphereTree back = test::tree_of_bytes(bytes);
+    EXPECT_FALSE(back.has_voxels());
+    EXPECT_EQ(back.origin(), tree.origin());
+    EXPECT_EQ(back.bounding_radius(), tree.bounding_radius());
+    EXPECT_EQ(back.orientation(), tree.orientation());
+    EXPECT_EQ(back.source(), tree.source());
+    EXPECT_EQ(back.frame(), mesh.frame);
+    EXPECT_EQ(back.triangles()->frame, mesh.frame);
+    EXPECT_EQ(back.triangles()->vertices, tree.triangles()->vertices);
+    EXPECT_EQ(back.triangles()->triangles, tree.triangles()->triangles);
+    EXPECT_EQ(test::file_of(back), bytes);
   }
 }
 

@@ -94,14 +94,14 @@ TEST(LeafPolygons, LieInTheirCubesAndCoverTheMesh) {
   options.voxel_size = 0.37;
   options.keep_triangles = true;
   const SphereTree tree = build_tree(mesh, options);
-  const std::vector<std::uint64_t> codes = parts_of(tree).octree.codes(0);
+  const std::vector<std::uint64_t> codes = voxels_of(tree).octree.codes(0);
   double area = 0, whole = 0;
   const auto twice = [](const Vector3d& a, const Vector3d& b, const Vector3d& c) {
     return (b - a).cross(c - a).norm();
   };
   for (std::uint32_t leaf = 0; leaf < codes.size(); ++leaf) {
     const Vector3d centre =
-        options.voxel_size * cube_centre(parts_of(tree).lattice, 0, codes[leaf]);
+        options.voxel_size * cube_centre(voxels_of(tree).lattice, 0, codes[leaf]);
     for (const ClippedTriangle& piece : leaf_polygons(tree, leaf, codes[leaf])) {
       for (int i = 0; i < piece.count; ++i) {
         const Vector3d& p = piece.corners[static_cast<std::size_t>(i)];
@@ -120,7 +120,7 @@ TEST(LeafPolygons, LieInTheirCubesAndCoverTheMesh) {
 TEST(LeafGrid, FindsAllThatAreNear) {
   Random random(3);
   const SphereTree tree = tree_of(icosphere(2, 1), 13);
-  const std::vector<std::uint64_t> codes = parts_of(tree).octree.codes(0);
+  const std::vector<std::uint64_t> codes = voxels_of(tree).octree.codes(0);
   const double edge = tree.voxel_size();
   for (const double radius : {0.1 * edge, 0.9 * edge, 7 * edge, 100 * edge}) {
     const LeafGrid grid(tree, radius);
@@ -129,7 +129,7 @@ TEST(LeafGrid, FindsAllThatAreNear) {
       std::multiset<std::uint32_t> found;
       grid.near(centre, radius, [&](std::uint32_t leaf) { found.insert(leaf); });
       for (std::uint32_t leaf = 0; leaf < codes.size(); ++leaf) {
-        const double apart = (edge * cube_centre(parts_of(tree).lattice, 0, codes[leaf]) - centre)
+        const double apart = (edge * cube_centre(voxels_of(tree).lattice, 0, codes[leaf]) - centre)
                                  .cwiseAbs()
                                  .maxCoeff();
         EXPECT_LE(found.count(leaf), 1u);

@@ -63,8 +63,8 @@ test('sentences describe a body', () => {
   const tree = {kind: 'tree', triangles: false, voxels: 9, voxel_size: 0.5, extent: [1, 2, 3], closed: null, unit: 'mm'};
   assert.match(infoSentences(tree).join(' '), /A tree of 9 voxels of 0.5, without triangles.* Extent 1 × 2 × 3 mm\.$/);
   assert.equal(
-    infoSentences({...tree, triangles: true, voxels: 1})[0],
-    'A mesh, kept in a tree of one voxel: the page builds its own tree.',
+    infoSentences({...tree, triangles: true, voxels: null, voxel_size: null})[0],
+    'A tree of triangles without voxels: the page builds its own tree.',
   );
 });
 

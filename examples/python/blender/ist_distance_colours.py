@@ -44,7 +44,7 @@ def distances(points, vertices, faces, reach):
     """The signed distance of each point from a surface; NaN beyond the reach."""
     if len(faces) == 0:
         raise ValueError("the active mesh has no faces: choose one with a surface")
-    tree = ist.build((vertices, faces), voxel_size=np.ptp(vertices, axis=0).max() / 100)
+    tree = ist.build((vertices, faces))
     return ist.signed_distance(tree, points, reach=reach)["distance"]
 
 

@@ -54,11 +54,7 @@ def measure(fixed, moving, pose, reach=2.0, contact=0.1, progress=None):
         import ist
     except ImportError as missing:
         raise RuntimeError("the package ist is missing: install its wheel by slicer.util.pip_install") from missing
-    trees = []
-    for name, data in (("fixed", fixed), ("moving", moving)):
-        surface = triangles_of(name, data)
-        bounds = np.array(surface.GetBounds())
-        trees.append(ist.build(surface, voxel_size=(bounds[1::2] - bounds[::2]).max() / 100))
+    trees = [ist.build(triangles_of(name, data)) for name, data in (("fixed", fixed), ("moving", moving))]
     return ist.occlusion(*trees, pose, reach=reach, contact=contact, progress=progress)
 
 

@@ -68,8 +68,8 @@ std::vector<std::uint64_t> open_faces(std::span<const std::uint64_t> cells, std:
 PolyData level_cubes(const SphereTree& tree, int level, Progress* progress) {
   Progress unseen;
   Progress& shown = progress != nullptr ? *progress : unseen;
-  const Lattice& lattice = parts_of(tree).lattice;
-  const std::vector<std::uint64_t> cells = parts_of(tree).octree.codes(level);
+  const Lattice& lattice = voxels_of(tree).lattice;
+  const std::vector<std::uint64_t> cells = voxels_of(tree).octree.codes(level);
   const std::vector<std::uint64_t> faces = open_faces(cells, 1u << (tree.depth() - level), shown);
   shown.begin_stage("sorting corners", 0);
   std::vector<std::uint64_t> corners = faces;

@@ -213,7 +213,7 @@ Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Is
 
   OcclusionOptions options = options_of(bite);
   options.proceed = shown_by(progress, "measuring the occlusion");
-  const Query query(bodies.fixed, bodies.moving, {.policy = bodies.policy});
+  const Query query(bodies.fixed, bodies.moving, {.policy = bodies.query_policy()});
   Occlusion measured = occlusion(query, pose, options);
   bite.fixed.surface = std::move(measured.fixed);
   bite.moving.surface = std::move(measured.moving);

@@ -89,12 +89,11 @@ double coarsest_for(const TriangleMesh& fixed, const TriangleMesh& moving,
               smaller.string());
 }
 
-// Builds a tree of one voxel for exact queries, which do without voxels.
+// Builds a tree without voxels for exact queries.
 SphereTree build_exact(const std::filesystem::path& file, TriangleMesh mesh,
                        std::uint64_t max_memory, std::vector<std::string>& warnings,
                        ProgressBar& bar) {
   BuildOptions build;
-  build.voxel_size = extent_of(mesh);
   build.max_memory = max_memory;
   SphereTree tree =
       build_with_progress(file.string(), std::move(mesh), build, warnings, nullptr, &bar);

@@ -28,8 +28,8 @@ namespace {
 struct BuildArguments {
   std::filesystem::path mesh, output;
   BuildOptions build;
-  std::optional<double> voxel_size;  // empty: 1/500 of the largest extent
-  std::string spheres{to_string(BuildOptions{}.spheres)};
+  std::optional<double> voxel_size;  // empty: no voxels
+  std::optional<std::string> spheres;
   std::string unit, frame, to_frame;  // empty: unknown
   bool no_triangles = false;
   std::vector<std::string> classes{"surface"};
@@ -46,14 +46,79 @@ void take_frame(const std::string& name, const std::filesystem::path& file, Tria
   mesh.frame = frame;
 }
 
+constexpr std::string_view kDefaultSpheres = to_string(BuildOptions{}.spheres);
+
+// Refuses the options of voxels without a voxel size.
+void check_voxels(const BuildArguments& options) {
+  check_voxel_size(options.voxel_size);
+  if (options.voxel_size) return;
+  constexpr const char* kNeeds = "goes with --voxel-size: without it the tree has triangles alone";
+  refuse_if(options.spheres.has_value(), "--spheres", kNeeds);
+  refuse_if(options.build.proximity, "--classes", kNeeds);
+  refuse_if(options.no_triangles, "--no-triangles", kNeeds);
+}
+
+nlohmann::ordered_json json_of_build(const BuildArguments& options, const SphereTree& tree,
+                                     std::size_t triangles, std::uint64_t bytes,
+                                     const BuildReport& report,
+                                     const std::vector<std::string>& warnings) {
+  nlohmann::ordered_json line{{"file", options.output.filename().string()},
+                              {"triangles", triangles},
+                              {"voxel_size", voxel_size_json(tree)},
+                              {"spheres", nullptr},
+                              {"voxels", nullptr},
+                              {"nodes", nullptr},
+                              {"depth", nullptr},
+                              {"bytes", bytes},
+                              {"memory", tree.bytes()},
+                              {"unit", json_of(tree.source().unit)},
+                              {"frame", json_of(tree.frame())},
+                              {"source", json_of(tree.source())}};
+  if (tree.has_voxels()) {
+    line["spheres"] = to_string(options.build.spheres);
+    line["voxels"] = tree.leaf_count();
+    line["nodes"] = voxels_of(tree).octree.node_count();
+    line["depth"] = tree.depth();
+  }
+  if (tree.has_proximity()) {
+    line["proximity_voxels"] = voxels_of(tree).proximity->octree.leaf_count();
+  }
+  for (const auto& stage : report.stages) line["milliseconds"][stage.name] = stage.milliseconds;
+  line["warnings"] = nlohmann::ordered_json::array();
+  for (std::string warning : warnings) {  // which begin with the file, and JSON holds no path
+    if (warning.starts_with(options.mesh.string())) {
+      warning.replace(0, options.mesh.string().size(), options.mesh.filename().string());
+    }
+    line["warnings"].push_back(warning);
+  }
+  return line;
+}
+
+void print_build(const BuildArguments& options, const SphereTree& tree, std::size_t triangles,
+                 std::uint64_t bytes, const BuildReport& report) {
+  const std::string of = tree.has_voxels()
+                             ? fmt::format("{} voxels, {} nodes, depth {}", tree.leaf_count(),
+                                           voxels_of(tree).octree.node_count(), tree.depth())
+                             : fmt::format("{} triangles, no voxels", triangles);
+  fmt::print("{}: {}, {:.1f} MB\n", options.output.string(), of, static_cast<double>(bytes) / 1e6);
+  if (tree.has_proximity()) {
+    fmt::print("proximity voxels: {}\n", voxels_of(tree).proximity->octree.leaf_count());
+  }
+  for (const auto& stage : report.stages) {
+    fmt::print("  {:<18} {:8.1f} ms\n", stage.name, stage.milliseconds);
+  }
+}
+
 void run(BuildArguments options) {
-  options.build.spheres = *sphere_policy(options.spheres);
+  options.build.spheres = *sphere_policy(options.spheres.value_or(std::string(kDefaultSpheres)));
   const auto names = [&](const char* name) {
     return std::find(options.classes.begin(), options.classes.end(), name) != options.classes.end();
   };
   refuse_if(!names("surface"), "--classes",
             "surface voxels are always made: give surface,proximity");
   options.build.proximity = names("proximity");
+  options.build.voxel_size = options.voxel_size.value_or(0);
+  check_voxels(options);
   check_output(options.output, {options.mesh});
   options.build.source = source_of(options.mesh);
   options.build.source.unit = length_unit(options.unit).value_or(LengthUnit::kUnknown);
@@ -71,8 +136,6 @@ void run(BuildArguments options) {
     fmt::print(stderr, "note: {}\n", open_surfaces({options.mesh.string()}));
   }
   const double extent = largest_extent(box_of(checked.mesh));
-  options.build.voxel_size =
-      options.voxel_size ? *options.voxel_size : default_voxel_size(extent, "the largest extent");
   const std::size_t triangles = checked.mesh.triangles.size();
   BuildReport report;
   const SphereTree tree = build_with_progress(options.mesh.string(), std::move(checked.mesh),
@@ -83,44 +146,9 @@ void run(BuildArguments options) {
   print_warnings(checked.warnings);
   const std::uint64_t bytes = write_tree(tree, options.output);
 
-  const LinearOctree& octree = parts_of(tree).octree;
-  if (options.json) {
-    print_header("build", {{"mesh", options.mesh}});
-    nlohmann::ordered_json line{{"file", options.output.filename().string()},
-                                {"triangles", triangles},
-                                {"voxel_size", tree.voxel_size()},
-                                {"spheres", options.spheres},
-                                {"voxels", octree.leaf_count()},
-                                {"nodes", octree.node_count()},
-                                {"depth", octree.depth()},
-                                {"bytes", bytes},
-                                {"memory", tree.bytes()},
-                                {"unit", json_of(tree.source().unit)},
-                                {"frame", json_of(tree.frame())},
-                                {"source", json_of(tree.source())}};
-    if (parts_of(tree).proximity)
-      line["proximity_voxels"] = parts_of(tree).proximity->octree.leaf_count();
-    for (const auto& stage : report.stages) line["milliseconds"][stage.name] = stage.milliseconds;
-    line["warnings"] = nlohmann::ordered_json::array();
-    for (std::string warning :
-         checked.warnings) {  // which begin with the file, and JSON holds no path
-      if (warning.starts_with(options.mesh.string())) {
-        warning.replace(0, options.mesh.string().size(), options.mesh.filename().string());
-      }
-      line["warnings"].push_back(warning);
-    }
-    print_json(line);
-    return;
-  }
-  fmt::print("{}: {}, {}, depth {}, {:.1f} MB\n", options.output.string(),
-             counted(octree.leaf_count(), "voxel"), counted(octree.node_count(), "node"),
-             octree.depth(), static_cast<double>(bytes) / 1e6);
-  if (parts_of(tree).proximity) {
-    fmt::print("proximity voxels: {}\n", parts_of(tree).proximity->octree.leaf_count());
-  }
-  for (const auto& stage : report.stages) {
-    fmt::print("  {:<18} {:8.1f} ms\n", stage.name, stage.milliseconds);
-  }
+  if (!options.json) return print_build(options, tree, triangles, bytes, report);
+  print_header("build", {{"mesh", options.mesh}});
+  print_json(json_of_build(options, tree, triangles, bytes, report, checked.warnings));
 }
 
 }  // namespace
@@ -133,7 +161,8 @@ void add_build(CLI::App& app) {
       ->required();
   add_file(*command, "-o,--output", options->output, "the tree file to write, .ist")->required();
   command->add_option("--voxel-size", options->voxel_size,
-                      "edge of a voxel, in mesh units; by default 1/500 of the largest extent");
+                      "edge of a voxel, in mesh units; by default the tree gets no voxels, because "
+                      "only leaf pairs and contacts need them");
   command
       ->add_option("--unit", options->unit,
                    "unit of the mesh's lengths, which the tree remembers; nothing is converted")
@@ -149,9 +178,9 @@ void add_build(CLI::App& app) {
       ->transform(one_of({"ras", "lps"}));
   command
       ->add_option("--spheres", options->spheres,
-                   "bounds to save beside simple and table, which need no saving")
+                   "bounds of voxels to save beside simple and table, which need no saving")
       ->transform(one_of(policy_names()))
-      ->capture_default_str();
+      ->default_str(std::string(kDefaultSpheres));
   command->add_flag("--no-triangles", options->no_triangles,
                     "make a smaller tree without the triangles, which exact answers need");
   command

@@ -10,7 +10,6 @@
 #include <string>
 
 #include "answers/engine.h"
-#include "answers/extents.h"
 #include "answers/occlusion/bite_maker.h"
 #include "answers/refusals.h"
 #include "cli/commands/commands.h"
@@ -132,9 +131,7 @@ void print_bite_of(const TriangleMesh& upper, const TriangleMesh& lower,
   constexpr double kDown = -0.6;  // mm
   std::vector<std::string> warnings;
   const auto whole = [&](const char* name, const TriangleMesh& mesh) {
-    BuildOptions options;  // triangles answer, so one voxel is enough
-    options.voxel_size = largest_extent(box_of(mesh));
-    return build_with_progress(name, mesh, options, warnings);
+    return build_with_progress(name, mesh, {}, warnings);
   };
   Bodies bodies{whole("upper jaw", upper), whole("lower jaw", lower), BuildOptions{}.spheres};
   print_warnings(warnings);

@@ -97,12 +97,13 @@ void run(const ExportArguments& options) {
             "goes with a .glb, which is in metres; .vtp and .ply keep the mesh's unit");
   check_output(options.output, {options.tree});
   const SphereTree tree = read_tree(options.tree);
+  require_voxels(tree, options.tree.string());
   refuse_if(options.level > tree.depth(), "--level", "the tree has levels 0 to {}", tree.depth());
   {
     ProgressBar progress;
     (options.what == "voxels" ? write_voxels : write_spheres)(tree, format, options, progress);
   }
-  const std::uint32_t count = parts_of(tree).octree.node_count(options.level);
+  const std::uint32_t count = voxels_of(tree).octree.node_count(options.level);
   if (options.json) {
     print_header("export", {{"tree", options.tree}});
     print_json({{"file", options.output.filename().string()},

@@ -105,18 +105,23 @@ void print_mesh(const std::filesystem::path& file, const MeshReport& report,
 void print_tree(const std::filesystem::path& file, const SphereTree& tree,
                 const std::optional<MeshReport>& triangles,
                 const std::vector<LevelStatistics>& levels) {
-  fmt::print("{}: a tree of {} of edge {}, {}, {:.1f} MB in memory\n", file.string(),
-             counted(tree.leaf_count(), "voxel"), tree.voxel_size(),
-             counted(parts_of(tree).octree.node_count(), "node"),
+  const std::string of =
+      tree.has_voxels()
+          ? fmt::format("{} of edge {}, {}", counted(tree.leaf_count(), "voxel"), tree.voxel_size(),
+                        counted(voxels_of(tree).octree.node_count(), "node"))
+          : "triangles without voxels";
+  fmt::print("{}: a tree of {}, {:.1f} MB in memory\n", file.string(), of,
              static_cast<double>(tree.bytes()) / 1e6);
   print_source(tree.source());
   print_extent(box_of(tree), tree.source().unit);
   print_frame(tree.frame());
   if (triangles) print_topology(*triangles, tree.source().unit);
-  fmt::print("orientation {}, {} kept, {}\n\n",
+  fmt::print("orientation {}, {} kept",
              tree.orientation() == Orientation::kOutward ? "outward" : "assumed",
-             counted(triangles ? triangles->triangles : 0, "triangle"),
-             counted(parts_of(tree).proximity ? parts_of(tree).proximity->octree.leaf_count() : 0,
+             counted(triangles ? triangles->triangles : 0, "triangle"));
+  if (!tree.has_voxels()) return fmt::print("\n");
+  fmt::print(", {}\n\n",
+             counted(tree.has_proximity() ? voxels_of(tree).proximity->octree.leaf_count() : 0,
                      "proximity voxel"));
   print_levels(tree, levels);
 }

@@ -3,7 +3,6 @@
 #include <utility>
 #include <variant>
 
-#include "answers/extents.h"
 #include "answers/json_parts.h"
 #include "cli/load_bodies.h"
 #include "cli/page/page_blocks.h"
@@ -27,15 +26,13 @@ constexpr std::uint64_t kLongest = 300'000'000;
 
 constexpr std::string_view kKey = R"({"recording":)";
 
-// The tree that the page makes its own of: of one voxel, with all triangles.
+// The tree that the page makes its own of.
 SphereTree whole(const SceneBody& body) {
   const auto* file = std::get_if<std::filesystem::path>(&body.source);
   if (file != nullptr && is_tree_file(*file)) return read_tree(*file);
   TriangleMesh mesh =
       file != nullptr ? load_mesh(*file).mesh : make_shape(std::get<BuiltInShape>(body.source));
-  BuildOptions options;
-  options.voxel_size = largest_extent(box_of(mesh));
-  return build_tree(std::move(mesh), options);
+  return build_tree(std::move(mesh));
 }
 
 nlohmann::json header_of(const std::string& text, const std::filesystem::path& file) {

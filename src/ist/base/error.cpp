@@ -13,8 +13,8 @@ constexpr std::array kNames = {
     "not-a-tree",       "tree-version",       "tree-truncated",       "tree-corrupt",
     "policy-missing",   "triangles-missing",  "target-missing",       "pose-invalid",
     "argument-invalid", "input-invalid",      "fixed-point-range",    "mesh-too-large",
-    "cancelled",        "part-busy"};
-static_assert(kNames.size() == static_cast<std::size_t>(ErrorCode::kPartBusy) + 1);
+    "cancelled",        "part-busy",          "voxels-missing"};
+static_assert(kNames.size() == static_cast<std::size_t>(ErrorCode::kVoxelsMissing) + 1);
 
 }  // namespace
 

@@ -36,6 +36,7 @@ enum class ErrorCode {
   kMeshTooLarge,       ///< the mesh file unpacks, or places, more than its reader allows
   kCancelled,          ///< the caller ended the call
   kPartBusy,           ///< another process is making this part of a sweep now
+  kVoxelsMissing,      ///< the tree lacks the voxels that leaf pairs and their contacts need
 };
 
 /// The exception of the library, beside std::bad_alloc. `what()` names the place, the cause and the

@@ -21,7 +21,7 @@ constexpr std::size_t kGrain = 256;
 // Points between two questions whether to go on: a few ms.
 constexpr std::size_t kAtOnce = 1 << 14;
 
-SurfaceDistance with_sign(const LeafTriangles& body, const NearestTriangle& nearest,
+SurfaceDistance with_sign(const TreeTriangles& body, const NearestTriangle& nearest,
                           const Vector& point) {
   const Side side = body.side_of(point, nearest);
   const double distance = std::sqrt(nearest.square);
@@ -41,7 +41,7 @@ void for_each_bit(std::uint32_t bits, const Body& body) {
 }  // namespace
 
 bool is_any_inside(const SurfaceInBody& side) {
-  const LeafTriangles& body = *parts_of(side.body).triangles;
+  const TreeTriangles& body = *parts_of(side.body).triangles;
   const auto& points = parts_of(side.surface).triangles->component_points();
   return std::any_of(points.begin(), points.end(), [&](const Eigen::Vector3d& point) {
     const Eigen::Vector3d at = side.to_body(point);
@@ -60,7 +60,7 @@ std::vector<SurfaceDistance> distances_of(const SphereTree& tree, const PointSea
                                           std::span<const Vector> points, double reach,
                                           const Proceed& proceed) {
   std::vector<SurfaceDistance> out(points.size());
-  const LeafTriangles& body = *parts_of(tree).triangles;
+  const TreeTriangles& body = *parts_of(tree).triangles;
   static_cast<void>(body.sides());  // made here, so that its loops have all threads
   for (std::size_t done = 0; done < points.size(); done += kAtOnce) {
     if (proceed && !proceed(static_cast<double>(done) / static_cast<double>(points.size()))) {

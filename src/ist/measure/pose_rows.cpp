@@ -10,6 +10,7 @@
 #include "ist/base/parallel.h"
 #include "ist/base/pose.h"
 #include "ist/measure/require.h"
+#include "ist/tree/tree_parts.h"
 
 namespace ist {
 namespace {
@@ -112,6 +113,10 @@ bool answer_rows(const RowSearch& search, std::span<const Eigen::Isometry3d> pos
                  const Proceed& proceed) {
   const ScopedFloatEnvironment environment;
   require_tolerance(questions.tolerance);
+  if (questions.leaf_pairs || questions.contacts) {
+    require_voxels(search.query.fixed(), "the fixed body");
+    require_voxels(search.query.moving(), "the moving body");
+  }
   if (questions.penetration) {
     require_triangles(search.query.fixed(), "the fixed body");
     require_triangles(search.query.moving(), "the moving body");

@@ -50,8 +50,9 @@ struct RowSearch {
 /// @param proceed asked every 20 ms, or every few poses where these take longer; false ends the
 /// call
 ///
-/// Returns whether all rows were given. Throws kTrianglesMissing, kArgumentInvalid (tolerance),
-/// kMemoryLimit. Cost: that of the verbs; each further thread makes a query of its own, a few ms.
+/// Returns whether all rows were given. Throws kTrianglesMissing, kVoxelsMissing, kArgumentInvalid
+/// (tolerance), kMemoryLimit. Cost: that of the verbs; each further thread makes a query of its
+/// own, a few ms.
 IST_LOOP_API bool answer_rows(
     const RowSearch& search, std::span<const Eigen::Isometry3d> poses,
     const RowQuestions& questions, std::size_t threads,

@@ -40,7 +40,7 @@ Inside inside_of(const Solid& fixed, const Solid& moving, const Eigen::Isometry3
   return holds(moving, fixed, RigidMove(inverse_of(pose))) ? Inside::kFixed : Inside::kNone;
 }
 
-Solid solid_of(const LeafTriangles& of) {
+Solid solid_of(const TreeTriangles& of) {
   return {of.mesh, &of.clusters, of.box(), of.component_points()};
 }
 

@@ -103,7 +103,8 @@ struct ManifoldOptions {
 /// the content of both trees. One manifold belongs to one thread at a time.
 class IST_API ContactManifold {
  public:
-  /// Throws kPolicyMissing; kArgumentInvalid for an option out of range; std::bad_alloc.
+  /// Throws kVoxelsMissing, kPolicyMissing; kArgumentInvalid for an option out of range;
+  /// std::bad_alloc.
   ContactManifold(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                   const ManifoldOptions& options = {});
   ~ContactManifold();

@@ -106,7 +106,7 @@ const char* to_string(Answer answer) noexcept {
 const char* to_string(QueryStatus status) noexcept {
   constexpr std::array kNames = {
       "done",         "invalid-pose", "no-triangles",   "manifold-mismatch", "busy",
-      "not-prepared", "no-such-body", "margin-invalid", "no-such-triangle"};
+      "not-prepared", "no-such-body", "margin-invalid", "no-such-triangle",  "no-voxels"};
   const auto at = static_cast<std::size_t>(status);
   return at < kNames.size() ? kNames[at] : "unknown";
 }
@@ -142,7 +142,7 @@ IntersectionResult Query::intersects(const Eigen::Isometry3d& pose, const Budget
   const SearchPose from = s.to_float(*bodies);
   const BudgetMeter meter(budget, budget.has_tests() ? result.sphere_tests : 0);
   AnyLeafPair any(from, meter);
-  const bool whole = s.serial().run(any) == s.plan.steps().size();
+  const bool whole = s.serial().run(any) == s.plan->steps().size();
   result.sphere_tests += any.tests() - meter.spent();
   result.complete = whole || any.found();
   if (any.found()) {
@@ -162,7 +162,8 @@ QueryResult Query::leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair>
   detail::QueryState& s = *state_;
   const detail::Use use(s);
   if (!use) return {.status = QueryStatus::kBusy, .complete = false};
-  LeafPairSink sink(s.plan, s.kernels, out);
+  if (!s.has_leaves()) return {.status = QueryStatus::kNoVoxels, .complete = false};
+  LeafPairSink sink(*s.plan, s.kernels, out);
   return s.list(pose, budget, sink);
 }
 
@@ -171,7 +172,8 @@ QueryResult Query::leaf_pairs(const Eigen::Isometry3d& pose, LeafPairStream& str
   detail::QueryState& s = *state_;
   const detail::Use use(s);
   if (!use) return {.status = QueryStatus::kBusy, .complete = false};
-  LeafPairSink sink(s.plan, s.kernels, s.window, stream);
+  if (!s.has_leaves()) return {.status = QueryStatus::kNoVoxels, .complete = false};
+  LeafPairSink sink(*s.plan, s.kernels, s.window, stream);
   return s.list(pose, {}, sink);
 }
 
@@ -183,6 +185,7 @@ QueryResult Query::contacts(const Eigen::Isometry3d& pose, ContactManifold& mani
   if (!use) return {.status = QueryStatus::kBusy, .complete = false};
   detail::ContactReducer& reducer = detail::reducer_of(manifold);
   reducer.clear();
+  if (!s.has_leaves()) return {.status = QueryStatus::kNoVoxels, .complete = false};
   if (!reducer.fits(s.fixed, s.moving, s.policy)) {
     return {.status = QueryStatus::kManifoldMismatch, .complete = false};
   }
@@ -194,7 +197,7 @@ QueryResult Query::contacts(const Eigen::Isometry3d& pose, ContactManifold& mani
   if (!bodies->roots.overlap) return result;
 
   const SearchPose from = s.to_float(*bodies);
-  ContactOutput sink(s.plan, s.kernels, from, reducer.adder(), reducer.leaf_sums());
+  ContactOutput sink(*s.plan, s.kernels, from, reducer.adder(), reducer.leaf_sums());
   // Only the end of a budget needs a bound: the upper one, because pairs of nodes are left.
   const Measured measured = budget.is_limited() ? Measured::kUpper : Measured::kNothing;
   auto [lower, upper] = s.search<ContactVisitor>(*bodies, from, budget, measured, sink, result);
@@ -304,9 +307,7 @@ const SphereTree& Query::moving() const noexcept { return state_->moving; }
 SpherePolicy Query::policy() const noexcept { return state_->policy; }
 const char* Query::target() const noexcept { return state_->kernels.target; }
 std::size_t Query::bytes() const noexcept { return state_->bytes; }
-int Query::workers() const noexcept {
-  return std::holds_alternative<SharedSearch>(state_->searches) ? 2 : 1;
-}
+int Query::workers() const noexcept { return state_->workers; }
 
 Sharing sharing_of(const Query& query) noexcept {
   const detail::QueryState& s = detail::Access::state(query);
@@ -375,7 +376,7 @@ void detail::QueryState::nearest_leaves(const Approach& bodies, double tolerance
   const std::uint64_t before = meter.spent();
   upper = std::min(upper, double{serial().beam(plain, meter)});
   NearestLeaves nearest(plain, tolerance, meter, result.distance);
-  const bool whole = serial().run(nearest) == plan.steps().size();
+  const bool whole = serial().run(nearest) == plan->steps().size();
   result.sphere_tests += nearest.tests() - before;
   if (whole) lower = std::min(upper, std::max(lower, nearest.least()));
 }

@@ -26,14 +26,16 @@ struct QueryState;
 
 /// The options of a Query: its bounds, its speed and its memory.
 struct QueryOptions {
-  /// How bounds are read; by default the tightest policy that both trees have.
+  /// How bounds are read; by default the tightest policy that both trees have. kPolicyMissing if a
+  /// tree lacks voxels.
   std::optional<SpherePolicy> policy = std::nullopt;
   /// The instruction set: `avx3`, `avx2`, `sse4`, `ssse3` or `scalar`; by default the environment's
   /// IST_TARGET, or the best one. The answer does not depend on it.
   std::string target = {};
-  /// The most pairs of nodes in memory for each level and worker, 12 bytes each. The answer does
-  /// not depend on it. With the default, a level stays in a core's own cache. A quarter of it takes
-  /// a tenth more time for closed jaws; four times as many gain nothing.
+  /// The most pairs of nodes in memory for each level and worker, 12 bytes each; none without
+  /// voxels. The answer does not depend on it. With the default, a level stays in a core's own
+  /// cache. A quarter of it takes a tenth more time for closed jaws; four times as many gain
+  /// nothing.
   std::size_t frontier_pairs = 1 << 16;
   /// 1: the calling thread does all work. 2: a resident thread helps if it can.
   int workers = 1;
@@ -79,9 +81,9 @@ struct QueryOptions {
 /// in the query.
 class IST_API Query {
  public:
-  /// Throws kPolicyMissing, kTargetMissing, kMemoryLimit; kArgumentInvalid for a number of workers
-  /// other than 1 or 2, and for trees in different frames of a patient or different units;
-  /// std::bad_alloc.
+  /// Throws kPolicyMissing, kTargetMissing, kMemoryLimit; kVoxelsMissing if one tree lacks voxels
+  /// and the other no triangles; kArgumentInvalid for a number of workers other than 1 or 2, and
+  /// for trees in different frames of a patient or different units; std::bad_alloc.
   Query(const SphereTree& fixed, const SphereTree& moving, const QueryOptions& options = {});
   ~Query();
   Query(Query&&) noexcept;             ///< the other may then only be assigned or destroyed
@@ -97,7 +99,7 @@ class IST_API Query {
   [[nodiscard]] IntersectionResult intersects(const Eigen::Isometry3d& pose,
                                               const Budget& budget = {}) noexcept;
 
-  /// Finds all pairs of leaves whose bounds overlap.
+  /// Finds all pairs of leaves whose bounds overlap. kNoVoxels if a tree lacks voxels.
   ///
   /// @param pose   maps moving mesh coordinates to fixed mesh coordinates
   /// @param out    takes the pairs, sorted by fixed and then by moving leaf; if it is too short,
@@ -117,7 +119,8 @@ class IST_API Query {
   [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose,
                                        LeafPairStream& stream) noexcept;
 
-  /// Reduces all leaf pairs to contacts, and to sums for forces. The distance is between the roots'
+  /// Reduces all leaf pairs to contacts, and to sums for forces. kNoVoxels if a tree lacks voxels.
+  /// The distance is between the roots'
   /// bounds. With pairs it is no more than the resolution. If a budget ended the search, it is no
   /// more than the distance of its pairs. Inside a clearance that was kept, it is the rest of it.
   ///
@@ -229,7 +232,7 @@ class IST_API Query {
   [[nodiscard]] const SphereTree& fixed() const noexcept;
   /// The moving tree, which shares its content with the caller's.
   [[nodiscard]] const SphereTree& moving() const noexcept;
-  /// The bounds in use.
+  /// The bounds in use; kSimple if a tree lacks voxels.
   [[nodiscard]] SpherePolicy policy() const noexcept;
   /// The instruction set in use.
   [[nodiscard]] const char* target() const noexcept;

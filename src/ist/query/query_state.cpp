@@ -1,5 +1,7 @@
 #include "ist/query/query_state.h"
 
+#include <fmt/format.h>
+
 #include "ist/base/error.h"
 #include "ist/base/throw_error.h"
 #include "ist/query/query_rules.h"
@@ -15,15 +17,54 @@ namespace {
 // A stream is given at most this number of leaf pairs at once.
 constexpr std::size_t kWindow = 1 << 12;
 
-// Returns the fixed tree of two that can be compared.
-const SphereTree& comparable(const SphereTree& fixed, const SphereTree& moving) {
+// Returns the fixed tree of two that can be compared, and that answer a question together.
+const SphereTree& comparable(const SphereTree& fixed, const SphereTree& moving,
+                             const QueryOptions& options) {
   const std::string reason = contradiction(fixed, "the fixed tree", moving, "the moving tree");
-  if (reason.empty()) return fixed;
-  throw Error(ErrorCode::kArgumentInvalid, "query: " + reason);
+  if (!reason.empty()) throw Error(ErrorCode::kArgumentInvalid, "query: " + reason);
+  if (options.policy) {
+    fixed.require(*options.policy, "fixed");
+    moving.require(*options.policy, "moving");
+  }
+  const std::string nothing = lacks_common(fixed, "the fixed tree", moving, "the moving tree");
+  if (!nothing.empty()) throw Error(ErrorCode::kVoxelsMissing, "query: " + nothing);
+  return fixed;
+}
+
+const SphereTree& first(const SphereTree* tree, const SphereTree& other) noexcept {
+  return tree != nullptr ? *tree : other;
+}
+
+// Makes the plan of two trees if both have voxels. Returns whether it did.
+bool make_plan(std::optional<SearchPlan>& plan, const SphereTree& fixed, const SphereTree& moving,
+               const QueryOptions& options, const QueryRoom& room) {
+  const SphereTree &a = first(room.voxels, fixed), &b = first(room.voxels, moving);
+  if (!a.has_voxels() || !b.has_voxels()) return false;
+  plan.emplace(a, b, QueryState::policy_of(a, b, options));
+  return true;
+}
+
+bool have_triangles(const SphereTree& fixed, const SphereTree& moving,
+                    const QueryRoom& room) noexcept {
+  return first(room.triangles, fixed).triangles() != nullptr &&
+         first(room.triangles, moving).triangles() != nullptr;
 }
 
 CacheOptions coherent_options(const QueryOptions& options) {
   return {options.frontier_pairs, options.front_pairs, options.workers, options.period};
+}
+
+// Returns the bytes that a query reserves for the leaves of such a plan.
+std::size_t bytes_of_leaves(const SearchPlan& plan, const QueryOptions& options,
+                            const QueryRoom& room) {
+  std::size_t bytes =
+      (options.workers == 2 ? SharedSearch::bytes_for(plan, options.frontier_pairs)
+                            : Search::bytes_for(plan, options.frontier_pairs, room.search_items)) +
+      (kWindow + kLeafPairSpare) * sizeof(LeafPair);
+  if (options.front_pairs > 0) {
+    bytes += CachedSearch::bytes_for(plan, coherent_options(options));
+  }
+  return bytes;
 }
 
 TriangleOptions triangle_options(const QueryOptions& options, const QueryRoom& room) {
@@ -32,8 +73,9 @@ TriangleOptions triangle_options(const QueryOptions& options, const QueryRoom& r
 
 // Returns the bytes that a query with such a plan reserves. Throws kArgumentInvalid for an option
 // out of range.
-std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const SphereTree& moving,
-                       const QueryOptions& options, const QueryRoom& room) {
+std::size_t bytes_with(const std::optional<SearchPlan>& plan, const SphereTree& fixed,
+                       const SphereTree& moving, const QueryOptions& options,
+                       const QueryRoom& room) {
   if (options.workers != 1 && options.workers != 2) {
     throw_error(ErrorCode::kArgumentInvalid, "query option workers is {}: give 1 or 2",
                 options.workers);
@@ -44,15 +86,10 @@ std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const Sp
     throw_error(ErrorCode::kArgumentInvalid, "query option {} is {}: {} is the most", name, pairs,
                 kMostItems);
   }
-  std::size_t bytes =
-      (options.workers == 2 ? SharedSearch::bytes_for(plan, options.frontier_pairs)
-                            : Search::bytes_for(plan, options.frontier_pairs, room.search_items)) +
-      (kWindow + kLeafPairSpare) * sizeof(LeafPair);
-  if (options.front_pairs > 0) {
-    bytes += CachedSearch::bytes_for(plan, coherent_options(options));
-  }
-  if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    bytes += TriangleSearch::bytes_for(fixed, moving, triangle_options(options, room));
+  std::size_t bytes = plan ? bytes_of_leaves(*plan, options, room) : 0;
+  if (have_triangles(fixed, moving, room)) {
+    bytes += TriangleSearch::bytes_for(first(room.triangles, fixed), first(room.triangles, moving),
+                                       triangle_options(options, room));
   }
   return bytes;
 }
@@ -75,51 +112,75 @@ DistanceInterval narrowed(const Approach& bodies, const DistanceBounds& bounds, 
 
 }  // namespace
 
+std::string lacks_common(const SphereTree& a, std::string_view a_name, const SphereTree& b,
+                         std::string_view b_name) {
+  const auto half = [](const SphereTree& one, const SphereTree& other) {
+    return !one.has_voxels() && other.triangles() == nullptr;
+  };
+  if (half(b, a)) std::swap(a_name, b_name);
+  if (!half(a, b) && !half(b, a)) return {};
+  return fmt::format(
+      "{} has no voxels, and {} no triangles: build the first with a voxel size, or the second "
+      "with keep_triangles",
+      a_name, b_name);
+}
+
 QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tree,
                        const QueryOptions& options, const ScopedFloatEnvironment&,
                        const QueryRoom& room)
-    : fixed(comparable(fixed_tree, moving_tree)),
+    : fixed(comparable(fixed_tree, moving_tree, options)),
       moving(moving_tree),
       wanted_policy(options.policy),
       policy(policy_of(fixed, moving, options)),
       kernels(select_kernels(options.target)),
-      plan(fixed, moving, policy),
+      workers(options.workers),
+      has_plan(make_plan(plan, fixed, moving, options, room)),
+      is_bound(room.voxels == nullptr && room.triangles == nullptr),
       bytes(bytes_with(plan, fixed, moving, options, room)) {
+  if (plan) reserve_leaves(options, room);
+  if (have_triangles(fixed, moving, room)) {
+    triangles = &own_triangles.emplace(first(room.triangles, fixed), first(room.triangles, moving),
+                                       kernels, triangle_options(options, room));
+  }
+}
+
+void QueryState::reserve_leaves(const QueryOptions& options, const QueryRoom& room) {
   if (options.workers == 2) {
-    searches.emplace<SharedSearch>(plan, kernels, options.frontier_pairs, options.period);
+    searches.emplace<SharedSearch>(*plan, kernels, options.frontier_pairs, options.period);
   } else {
-    searches.emplace<Search>(plan, kernels, options.frontier_pairs, room.search_items);
+    searches.emplace<Search>(*plan, kernels, options.frontier_pairs, room.search_items);
   }
   if (options.front_pairs > 0) {
-    cached = &own_cache.emplace(fixed, moving, policy, plan, kernels, coherent_options(options));
+    cached = &own_cache.emplace(fixed, moving, policy, *plan, kernels, coherent_options(options));
   }
   window.resize(kWindow + kLeafPairSpare);
-  if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    triangles = &own_triangles.emplace(fixed, moving, kernels, triangle_options(options, room));
-  }
 }
 
 std::size_t QueryState::bytes_for(const SphereTree& fixed, const SphereTree& moving,
                                   const QueryOptions& options, const QueryRoom& room) {
-  const SearchPlan plan(fixed, moving, policy_of(fixed, moving, options));
+  std::optional<SearchPlan> plan;
+  make_plan(plan, comparable(fixed, moving, options), moving, options, room);
   return bytes_with(plan, fixed, moving, options, room);
 }
 
 void QueryState::bind(const SphereTree& fixed_tree, const TreeFacts& of_fixed,
                       const SphereTree& moving_tree, const TreeFacts& of_moving,
                       bool of_leaves) noexcept {
-  if (&parts_of(fixed_tree) != &parts_of(fixed) || &parts_of(moving_tree) != &parts_of(moving)) {
+  if (!is_bound || &parts_of(fixed_tree) != &parts_of(fixed) ||
+      &parts_of(moving_tree) != &parts_of(moving)) {
     fixed = fixed_tree;
     moving = moving_tree;
     policy = wanted_policy.value_or(std::min(fixed.tightest(), moving.tightest()));
     has_plan = false;
+    is_bound = true;
     const bool both = fixed.triangles() != nullptr && moving.triangles() != nullptr;
-    triangles = both && own_triangles ? &*own_triangles : nullptr;
+    triangles = both ? &*own_triangles : nullptr;
     if (both) triangles->bind(fixed, of_fixed.triangles, moving, of_moving.triangles);
   }
   if (triangles != nullptr) triangles->witnesses() = {};
-  if (has_plan || !(of_leaves || triangles == nullptr)) return;
-  plan.bind(fixed, of_fixed.shape, moving, of_moving.shape, policy);
+  const bool may_plan = of_fixed.leaves && of_moving.leaves;
+  if (has_plan || !may_plan || !(of_leaves || triangles == nullptr)) return;
+  plan->bind(fixed, of_fixed.leaves->shape, moving, of_moving.leaves->shape, policy);
   std::get_if<Search>(&searches)->bind();
   has_plan = true;
 }
@@ -132,7 +193,7 @@ double QueryState::triangle_error(const Eigen::Isometry3d& pose) const noexcept 
 
 std::optional<Approach> QueryState::approach(const Eigen::Isometry3d& pose,
                                              double margin) const noexcept {
-  const auto relative = relative_pose(pose, parts_of(fixed).lattice, parts_of(moving).lattice);
+  const auto relative = relative_pose(pose, parts_of(fixed).origin, parts_of(moving).origin);
   if (!relative) return std::nullopt;
   return Approach{*relative, test_roots(fixed, moving, policy, *relative, margin), margin};
 }
@@ -197,7 +258,7 @@ DistanceInterval QueryState::search(const Approach& bodies, const SearchPose& po
   result.sphere_tests += end.tests - meter.spent() + found.tests;
   result.leaf_pairs = end.leaf_pairs;
   result.truncated = sink.truncated();
-  result.level = static_cast<int>(plan.steps().size() - end.steps);
+  result.level = static_cast<int>(plan->steps().size() - end.steps);
   result.complete = result.level == 0;
   if (keeps && result.complete) {
     cached->prepare(bodies.relative, bodies.margin, result.leaf_pairs, end.tests, budget);
@@ -227,7 +288,7 @@ DistanceInterval QueryState::answer_from(const CachedSearch::CacheAt& found, con
   result.complete = cached->pass_on(cache, pose, budget, sink);
   if (!result.complete) {
     if (!sink.stopped()) sink.clear();  // the pairs that were passed on are not repeatable
-    result.level = static_cast<int>(plan.steps().size());
+    result.level = static_cast<int>(plan->steps().size());
   }
   result.leaf_pairs = sink.count();
   result.truncated = sink.truncated();

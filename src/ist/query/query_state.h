@@ -5,6 +5,8 @@
 #include <atomic>
 #include <limits>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -35,19 +37,32 @@ struct Approach {
 
 /// Numbers of a tree that take time to measure.
 struct TreeFacts {
-  explicit TreeFacts(const SphereTree& tree)
-      : shape(tree), triangles(TriangleLengths::of(tree)), box(MotionBound::box_of(tree)) {}
+  struct Leaves {
+    TreeShape shape;
+    MotionBound::Box box;
+  };
+  explicit TreeFacts(const SphereTree& tree) : triangles(TriangleLengths::of(tree)) {
+    if (tree.has_voxels()) leaves = Leaves{TreeShape(tree), MotionBound::box_of(tree)};
+  }
 
-  TreeShape shape;
+  std::optional<Leaves> leaves;  ///< only with voxels
   TriangleLengths triangles;
-  MotionBound::Box box;
 };
 
-/// The least lengths of the lists of a query, for pairs of trees that it is bound to later.
+/// The memory of a query for pairs of trees that it is bound to later.
 struct QueryRoom {
-  std::size_t search_items = 0;   ///< Search::items_for()
-  std::size_t cluster_items = 0;  ///< ClusterSearch::items_for()
+  std::size_t search_items = 0;   ///< the least Search::items_for()
+  std::size_t cluster_items = 0;  ///< the least ClusterSearch::items_for()
+  /// A tree with voxels, and one with triangles, if two trees of a pair may have them. Null: the
+  /// query's own trees stand for those that come later.
+  const SphereTree* voxels = nullptr;
+  const SphereTree* triangles = nullptr;
 };
+
+/// Returns why two trees can answer no question together, and the remedy: one has no voxels, and
+/// the other no triangles. Empty if they can.
+[[nodiscard]] std::string lacks_common(const SphereTree& a, std::string_view a_name,
+                                       const SphereTree& b, std::string_view b_name);
 
 /// Returns whether a length may be the margin of a query.
 [[nodiscard]] inline bool is_margin(double margin) noexcept {
@@ -60,7 +75,7 @@ struct QueryState {
              const QueryOptions& options, const ScopedFloatEnvironment& environment,
              const QueryRoom& room = {});
 
-  /// Asks two other trees from now on, without what earlier questions left. Allocates nothing.
+  /// Asks two other trees from now on, and forgets earlier questions. Allocates nothing.
   /// Preconditions: the query has one worker, no pair cache of its own, and room for the trees.
   ///
   /// @param of_leaves whether the next question may search leaves: else binding takes less time
@@ -72,12 +87,14 @@ struct QueryState {
                                                           const SphereTree& moving,
                                                           const QueryOptions& options,
                                                           const QueryRoom& room = {});
-  /// Returns the policy of a query of two trees.
+  /// Returns the policy of a query of two trees; kSimple if one of them lacks voxels.
   [[nodiscard]] static SpherePolicy policy_of(const SphereTree& fixed, const SphereTree& moving,
                                               const QueryOptions& options) noexcept {
     return options.policy.value_or(std::min(fixed.tightest(), moving.tightest()));
   }
 
+  /// Reserves the memory for questions of leaves. Precondition: there is a plan.
+  void reserve_leaves(const QueryOptions& options, const QueryRoom& room);
   /// Composes the relative pose and tests the roots. Returns nothing if `pose` is no rigid motion.
   [[nodiscard]] std::optional<Approach> approach(const Eigen::Isometry3d& pose,
                                                  double margin = 0) const noexcept;
@@ -87,6 +104,9 @@ struct QueryState {
   [[nodiscard]] SearchPose to_float(const Approach& approach, double margin = 0) const noexcept;
   /// Returns the pad of leaves that a leaf pair may need, mesh units.
   [[nodiscard]] double pad_of(const SearchPose& pose) const noexcept;
+  /// Returns whether both trees have voxels. The steps of leaves need them. A query that was bound
+  /// for another question has none.
+  [[nodiscard]] bool has_leaves() const noexcept { return has_plan; }
   /// Returns the search of the calling thread alone.
   [[nodiscard]] Search& serial() noexcept;
   /// Passes the leaf pairs of two bodies whose roots overlap to a Lister's sink: from a cache, or
@@ -124,8 +144,10 @@ struct QueryState {
   const std::optional<SpherePolicy> wanted_policy;
   SpherePolicy policy;
   const Kernels& kernels;
-  SearchPlan plan;
-  bool has_plan = true;  // of these trees
+  int workers;
+  std::optional<SearchPlan> plan;  // only with voxels, as `searches` and the cache
+  bool has_plan;                   // of these trees
+  bool is_bound;                   // to these trees; else bind() has to come first
   std::size_t bytes;
   std::variant<std::monostate, Search, SharedSearch> searches;  // made after the plan it refers to
   std::optional<CachedSearch> own_cache;

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "ist/base/ordered_vector.h"
-#include "ist/voxel/lattice.h"
+#include "ist/tree/frame_origin.h"
 
 namespace ist {
 
@@ -21,8 +21,8 @@ struct RelativePose {
 /// The translation is summed in twice the precision of double, so its error is 2⁻⁵² of its own
 /// length, wherever the scene lies. Cost: some 500 flops, no allocation.
 [[nodiscard]] std::optional<RelativePose> relative_pose(const Eigen::Isometry3d& pose,
-                                                        const Lattice& fixed,
-                                                        const Lattice& moving) noexcept;
+                                                        const FrameOrigin& fixed,
+                                                        const FrameOrigin& moving) noexcept;
 
 [[nodiscard]] inline Eigen::Vector3d turned(const RelativePose& pose,
                                             const Eigen::Vector3d& v) noexcept {

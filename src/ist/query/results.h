@@ -75,6 +75,7 @@ enum class QueryStatus : std::uint8_t {
   kNoSuchBody,        ///< of a World: no body has this number
   kMarginInvalid,     ///< the margin is negative, infinite or no number
   kNoSuchTriangle,    ///< a mesh has fewer triangles than the index asks for
+  kNoVoxels,          ///< the question needs voxels, and a tree was built without them
 };
 /// Returns the status' name, such as "invalid-pose", for logs and tests.
 [[nodiscard]] IST_API const char* to_string(QueryStatus status) noexcept;

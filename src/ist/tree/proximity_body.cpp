@@ -14,10 +14,10 @@ namespace {
 // Returns the lattice of the proximity cells, which begins kMargin cells below the surface's
 // lattice.
 Lattice lattice_of_cells(const SphereTree& tree) {
-  Lattice lattice = parts_of(tree).lattice;
+  Lattice lattice = voxels_of(tree).lattice;
   for (double& corner : lattice.corner) corner -= ProximityTree::kMargin * lattice.voxel_size;
   lattice.cells += 2 * ProximityTree::kMargin;
-  lattice.depth = parts_of(tree).proximity->octree.depth();
+  lattice.depth = voxels_of(tree).proximity->octree.depth();
   return lattice;
 }
 
@@ -45,13 +45,15 @@ TriangleMesh centres_of(VoxelSet& voxels) {
 SphereTree proximity_body(const SphereTree& tree) {
   const ScopedFloatEnvironment environment;
   IST_ASSERT(tree.has_proximity());
-  const LinearOctree& octree = parts_of(tree).proximity->octree;
+  const LinearOctree& octree = voxels_of(tree).proximity->octree;
   VoxelSet voxels{
       lattice_of_cells(tree), octree.codes(0), std::vector<PackedNormal>(octree.leaf_count()), {}};
   const TriangleMesh centres = centres_of(voxels);
   BoundBlocks bounds = build_bounds(SpherePolicy::kTight, centres, voxels, octree);
-  return tree_from({voxels.lattice, octree, tree.orientation(), std::move(voxels.normals),
-                    std::move(bounds), std::nullopt, std::nullopt});
+  TreeParts parts;
+  parts.voxels = TreeVoxels{voxels.lattice, octree, std::move(voxels.normals), std::move(bounds)};
+  parts.orientation = tree.orientation();
+  return tree_from(std::move(parts));
 }
 
 }  // namespace ist

@@ -30,20 +30,20 @@ Eigen::Vector3d cube_centre(const Lattice& lattice, int level, std::uint64_t cod
 }
 
 std::vector<Ball> level_spheres(const SphereTree& tree, SpherePolicy policy, int level) {
-  const LinearOctree& octree = parts_of(tree).octree;
+  const LinearOctree& octree = voxels_of(tree).octree;
   std::vector<Ball> spheres;
   spheres.reserve(octree.node_count(level));
   if (is_implicit(policy)) {
     for (const std::uint64_t code : octree.codes(level)) {
-      spheres.push_back(parts_of(tree).ball(policy, level,
-                                            static_cast<std::uint32_t>(spheres.size()),
-                                            cube_centre(parts_of(tree).lattice, level, code)));
+      spheres.push_back(voxels_of(tree).ball(policy, level,
+                                             static_cast<std::uint32_t>(spheres.size()),
+                                             cube_centre(voxels_of(tree).lattice, level, code)));
     }
     return spheres;
   }
-  for (std::uint32_t parent = 0; parent < parts_of(tree).balls(level).size(); ++parent) {
+  for (std::uint32_t parent = 0; parent < voxels_of(tree).balls(level).size(); ++parent) {
     for (int slot = 0; slot < octree.child_count(level + 1, parent); ++slot) {
-      spheres.push_back(parts_of(tree).saved_ball(level, parent, slot));
+      spheres.push_back(voxels_of(tree).saved_ball(level, parent, slot));
     }
   }
   return spheres;
@@ -64,9 +64,10 @@ double unit_ball_volume(double voxel_size) noexcept {
 std::vector<LevelStatistics> level_statistics(const SphereTree& tree) {
   const ScopedFloatEnvironment environment;
   std::vector<LevelStatistics> levels;
+  if (!tree.has_voxels()) return levels;
   for (int level = 0; level <= tree.depth(); ++level) {
     LevelStatistics& statistics = levels.emplace_back(LevelStatistics{
-        level, parts_of(tree).lattice.edge(level), parts_of(tree).octree.node_count(level), {}});
+        level, voxels_of(tree).lattice.edge(level), voxels_of(tree).octree.node_count(level), {}});
     for (const SpherePolicy policy : kSpherePolicies) {
       if (tree.has(policy)) statistics.spheres.push_back(make(tree, policy, level));
     }

@@ -42,8 +42,8 @@ struct LevelStatistics {
   std::vector<LevelSpheres> spheres;  ///< one entry for each policy of the tree
 };
 
-/// Returns the statistics of all levels, leaves first. Cost: 20 ns a node and policy, and 32 bytes
-/// a node of the largest level.
+/// Returns the statistics of all levels, leaves first; none without voxels. Cost: 20 ns a node and
+/// policy, and 32 bytes a node of the largest level.
 [[nodiscard]] std::vector<LevelStatistics> level_statistics(const SphereTree& tree);
 
 /// Returns the volume of a voxel's circumsphere, (√3/2) π s³: the article's unit of volume.

@@ -56,10 +56,10 @@ inline constexpr std::array kSpherePolicies = {SpherePolicy::kSimple, SpherePoli
 
 /// The file that a mesh was read from, and the unit of the mesh's lengths.
 struct MeshSource {
-  /// The file's name without its folder, empty where unknown: UTF-8, at most 255 bytes, none of
-  /// them a control character, a slash or a backslash.
+  /// The file's name without its folder, empty if unknown: UTF-8, at most 255 bytes, without
+  /// control characters, slashes and backslashes.
   std::string name = {};
-  std::uint64_t hash = 0;                  ///< XXH3-64 of the file's bytes; 0 where unknown
+  std::uint64_t hash = 0;                  ///< XXH3-64 of the file's bytes; 0 if unknown
   LengthUnit unit = LengthUnit::kUnknown;  ///< of the mesh's lengths
 
   /// Compares all members.
@@ -77,29 +77,37 @@ struct LeafPair {
 };
 static_assert(sizeof(LeafPair) == 8);
 
-/// A body made ready for queries: its voxels, folded into an octree of bounding spheres. The
-/// content never changes after it was built. Copies share it, and so do queries: a tree may be
+/// A body made ready for queries. Its triangles answer questions about the surface itself. Its
+/// voxels, folded into an octree of bounding spheres, answer leaf pairs and contacts. It has either
+/// or both.
+///
+/// The content never changes after it was built. Copies share it, and so do queries: a tree may be
 /// moved, or go away, while a query uses it, and any number of threads may read it. A tree that was
 /// moved from may only be assigned to or destroyed. Lengths are in mesh units.
 class IST_API SphereTree {
  public:
-  /// The edge of a voxel.
+  /// Whether the tree has voxels: it was built with a voxel size.
+  [[nodiscard]] bool has_voxels() const noexcept;
+  /// The edge of a voxel; 0 without voxels.
   [[nodiscard]] double voxel_size() const noexcept;
-  /// The number of voxels that the surface meets.
+  /// The number of voxels that the surface meets; 0 without voxels.
   [[nodiscard]] std::uint32_t leaf_count() const noexcept;
-  /// The level of the root; leaves are at level 0.
+  /// The level of the root; leaves are at level 0. It is 0 without voxels.
   [[nodiscard]] int depth() const noexcept;
   /// Whether the outer side of the surface is known or assumed.
   [[nodiscard]] Orientation orientation() const noexcept;
-  /// The centres of all leaf cubes, mesh coordinates, in the order by which LeafPair counts them.
-  /// Cost: 20 ns a leaf.
+  /// The centres of all leaf cubes, mesh coordinates, in the order of the indices of LeafPair.
+  /// Empty without voxels. Cost: 20 ns a leaf.
   [[nodiscard]] std::vector<Eigen::Vector3d> leaf_centres() const;
 
-  /// The last of kSpherePolicies that the tree has. It has those before it too.
+  /// The last of kSpherePolicies that the tree has. It has those before it too. Without voxels this
+  /// is kSimple, and has() is false.
   [[nodiscard]] SpherePolicy tightest() const noexcept;
-  /// Whether the tree has those spheres.
-  [[nodiscard]] bool has(SpherePolicy policy) const noexcept { return policy <= tightest(); }
-  /// Throws kPolicyMissing, naming `body` and the remedy, where the tree has no such spheres.
+  /// Whether the tree has those spheres; false without voxels.
+  [[nodiscard]] bool has(SpherePolicy policy) const noexcept {
+    return has_voxels() && policy <= tightest();
+  }
+  /// Throws kPolicyMissing if the tree lacks those spheres. The error names `body` and the remedy.
   void require(SpherePolicy policy, std::string_view body) const;
 
   /// The triangles that the build oriented and, unless it was told not to, welded. They are the
@@ -116,11 +124,14 @@ class IST_API SphereTree {
   /// Whether the tree holds proximity voxels (BuildOptions::proximity).
   [[nodiscard]] bool has_proximity() const noexcept;
 
-  /// The origin of the tree's frame in mesh coordinates: the centre of the root cube.
+  /// The origin of the tree's frame in mesh coordinates: the centre of the root cube; without
+  /// voxels the middle of the box round the vertices that triangles use.
   [[nodiscard]] Eigen::Vector3d origin() const noexcept;
-  /// No sphere of the tree extends farther than this from the origin of the tree's frame.
+  /// No sphere of the tree extends farther than this from the origin of the tree's frame; without
+  /// voxels no triangle does.
   [[nodiscard]] double bounding_radius() const noexcept;
-  /// The radius of the largest leaf sphere. Precondition: has(policy).
+  /// The radius of the largest leaf sphere; 0 without voxels. Precondition: has(policy), or the
+  /// tree lacks voxels.
   [[nodiscard]] double largest_leaf_radius(SpherePolicy policy) const noexcept;
   /// Bytes in memory, without the 24 a triangle that ist/measure.h adds at its first use.
   [[nodiscard]] std::uint64_t bytes() const noexcept;
@@ -134,16 +145,21 @@ class IST_API SphereTree {
 
 /// The options of build_tree().
 struct BuildOptions {
-  double voxel_size = 0;                       ///< edge of a voxel, mesh units; required
-  SpherePolicy spheres = SpherePolicy::kSlab;  ///< the tightest to save; implicit ones cost nothing
+  /// Edge of a voxel, mesh units; 0: the tree gets no voxels. Only leaf pairs and contacts need
+  /// them. A build without them is faster.
+  double voxel_size = 0;
+  /// The tightest spheres to save, round voxels; implicit ones cost nothing.
+  SpherePolicy spheres = SpherePolicy::kSlab;
   /// For exact answers: 48 bytes a triangle for its clusters, 25 for the mesh, and 4 for each leaf
   /// that it meets: 80 with large voxels, 150 with 0.2 mm on a jaw of 107,000 triangles.
+  /// kArgumentInvalid if it is false and the voxel size is 0.
   bool keep_triangles = true;
-  bool proximity = false;  ///< proximity voxels besides surface voxels
+  /// Proximity voxels besides surface voxels. kArgumentInvalid if the voxel size is 0.
+  bool proximity = false;
   /// Vertices at exactly one position count as one, as in files: weld(). Without it, triangles are
   /// neighbours only if they share indices.
   bool weld = true;
-  std::uint64_t max_memory = std::uint64_t{4} << 30;  ///< bytes, for the voxels and the tree
+  std::uint64_t max_memory = std::uint64_t{4} << 30;  ///< bytes, for voxels, bounds and clusters
   /// Kept by the tree; nothing is converted. If its unit is unknown, the tree keeps the mesh's.
   /// kArgumentInvalid if both are known and differ.
   MeshSource source = {};
@@ -163,8 +179,8 @@ struct BuildReport {
   std::size_t turned_components = 0;  ///< closed components that were inside out
 };
 
-/// Builds a tree from a mesh: welds it, turns it outward, finds its voxels, folds them into an
-/// octree and makes the bounds that are saved.
+/// Builds a tree from a mesh: welds it, turns it outward and puts its triangles into clusters. With
+/// a voxel size it finds the voxels, folds them into an octree and makes the bounds that are saved.
 ///
 /// @param mesh     the surface, mesh units
 /// @param options  voxel size, bounds, memory
@@ -172,14 +188,15 @@ struct BuildReport {
 /// @param progress written during the build, if not null; Progress::stop() ends the build
 ///
 /// Cost: on two cores, for a jaw of 107,000 triangles and 1.76 million voxels, 0.5 s; with kTight
-/// 1.3 s more, with kSlab 2 s more. Throws kMeshEmpty, kMeshPointsOnly, kMeshNotFinite,
-/// kMeshBadIndex, kMeshExtent, kVoxelSizeInvalid, kVoxelSizeTooSmall, kMemoryLimit, kCancelled, and
-/// kArgumentInvalid for a source whose name is not as MeshSource says, or whose unit is not one.
-[[nodiscard]] IST_API SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options,
+/// 1.3 s more, with kSlab 2 s more; without voxels 0.2 s. Throws kMeshEmpty, kMeshPointsOnly,
+/// kMeshNotFinite, kMeshBadIndex, kMeshExtent, kVoxelSizeInvalid, kVoxelSizeTooSmall, kMemoryLimit,
+/// kCancelled, and kArgumentInvalid for options that contradict each other, for a source whose name
+/// is not as MeshSource says, or whose unit is not one.
+[[nodiscard]] IST_API SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options = {},
                                             BuildReport* report = nullptr,
                                             Progress* progress = nullptr);
 
-/// Whether build_tree() would give a tree: the voxel size is one for this mesh, and what it makes
+/// Whether build_tree() would give a tree: the voxel size is 0 or one for this mesh, and the tree
 /// fits the memory that is allowed. Cost: a tenth of the build.
 [[nodiscard]] IST_API bool can_build_tree(const TriangleMesh& mesh, const BuildOptions& options,
                                           Progress* progress = nullptr);

@@ -6,12 +6,14 @@
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/throw_error.h"
+#include "ist/mesh/bounding_box.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/bound_builder.h"
 #include "ist/tree/mesh_source.h"
 #include "ist/tree/nested_bounds.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
+#include "ist/voxel/triangle_bins.h"
 #include "ist/voxel/voxelizer.h"
 
 namespace ist {
@@ -59,6 +61,74 @@ std::optional<ProximityTree> make_proximity_tree(const TriangleMesh& mesh,
   return ProximityTree{LinearOctree(codes, static_cast<int>(std::bit_width(cells - 1)))};
 }
 
+// Returns the error of a mesh that gets no tree without voxels, or nullopt.
+std::optional<Error> flaw_without_voxels(const TriangleMesh& mesh, const BuildOptions& options) {
+  const auto refuse = [](const char* what) {
+    return Error(ErrorCode::kArgumentInvalid, fmt::format("{}: give a voxel size", what));
+  };
+  if (!options.keep_triangles) return refuse("a tree without triangles needs voxels");
+  if (options.proximity) return refuse("proximity voxels have the size of other voxels");
+  const Eigen::AlignedBox3d box = bounding_box(mesh);
+  if (std::optional<Error> flaw = extent_flaw(box.min(), box.max())) return flaw;
+  const std::uint64_t triangles = mesh.triangles.size();
+  if (triangles > kMaxTriangles || triangles * kClusterBytes > options.max_memory) {
+    return Error(
+        ErrorCode::kMemoryLimit,
+        fmt::format("the mesh has {} triangles, which need {} bytes of memory; {} are "
+                    "allowed, and {} triangles are the most: allow more memory, or "
+                    "simplify the mesh",
+                    triangles, triangles * kClusterBytes, options.max_memory, kMaxTriangles));
+  }
+  return std::nullopt;
+}
+
+// The stages of a build.
+class Stages {
+ public:
+  Stages(BuildReport* report, Progress* progress) : report_(report), progress_(progress) {}
+
+  void begin(const char* name) const {
+    if (progress_ != nullptr) progress_->begin_stage(name, 0);
+  }
+  void end(const char* name) {
+    const auto now = std::chrono::steady_clock::now();
+    if (report_ != nullptr) {
+      report_->stages.push_back(
+          {name, std::chrono::duration<double, std::milli>(now - begin_).count()});
+    }
+    begin_ = now;
+    if (progress_ != nullptr) progress_->check();
+  }
+  [[nodiscard]] Progress* progress() const noexcept { return progress_; }
+
+ private:
+  BuildReport* report_;
+  Progress* progress_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+TreeVoxels make_voxels(const TriangleMesh& mesh, const BuildOptions& options, Stages& stages) {
+  VoxelSet voxels = voxelize(mesh, voxelizer_options(options), stages.progress());
+  stages.end("voxels");
+
+  stages.begin("folding the octree");
+  TreeVoxels made{voxels.lattice, LinearOctree(voxels.codes, voxels.lattice.depth),
+                  std::move(voxels.normals)};
+  stages.end("octree");
+
+  if (!is_implicit(options.spheres)) {
+    made.bounds = build_bounds(options.spheres, mesh, voxels, made.octree, stages.progress());
+    stages.end("bounds");
+  }
+  if (options.proximity) {
+    stages.begin("finding proximity voxels");
+    made.proximity = make_proximity_tree(mesh, voxels);
+    stages.end("proximity voxels");
+  }
+  made.lists = std::move(voxels.triangles);
+  return made;
+}
+
 }  // namespace
 
 SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildReport* report,
@@ -80,53 +150,34 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
   if (source.unit == LengthUnit::kUnknown) source.unit = mesh.unit;
   require_valid(mesh);
   turn_into(mesh, options.frame);
-  auto begin = std::chrono::steady_clock::now();
-  const auto end_stage = [&](const char* name) {
-    const auto now = std::chrono::steady_clock::now();
-    if (report != nullptr)
-      report->stages.push_back(
-          {name, std::chrono::duration<double, std::milli>(now - begin).count()});
-    begin = std::chrono::steady_clock::now();
-    if (progress != nullptr) progress->check();
-  };
+  Stages stages(report, progress);
   if (options.weld) weld(mesh);
   const OrientationResult oriented = orient_outward(mesh, progress);
   if (report != nullptr) report->turned_components = oriented.turned_components;
-  end_stage("orientation");
+  stages.end("orientation");
 
-  VoxelSet voxels = voxelize(mesh, voxelizer_options(options), progress);
-  end_stage("voxels");
-
-  if (progress != nullptr) progress->begin_stage("folding the octree", 0);
-  TreeParts parts{voxels.lattice,
-                  LinearOctree(voxels.codes, voxels.lattice.depth),
-                  oriented.orientation,
-                  std::move(voxels.normals),
-                  {},
-                  std::nullopt,
-                  std::nullopt,
-                  source,
-                  mesh.frame};
-  end_stage("octree");
-
-  if (!is_implicit(options.spheres)) {
-    parts.bounds = build_bounds(options.spheres, mesh, voxels, parts.octree, progress);
-    end_stage("bounds");
-  }
-  if (options.proximity) {
-    if (progress != nullptr) progress->begin_stage("finding proximity voxels", 0);
-    parts.proximity = make_proximity_tree(mesh, voxels);
-    end_stage("proximity voxels");
+  TreeParts parts;
+  parts.orientation = oriented.orientation;
+  parts.source = std::move(source);
+  parts.frame = mesh.frame;
+  if (options.voxel_size == 0) {
+    if (const std::optional<Error> flaw = flaw_without_voxels(mesh, options)) throw *flaw;
+  } else {
+    parts.voxels = make_voxels(mesh, options, stages);
   }
   if (options.keep_triangles) {
-    parts.triangles =
-        LeafTriangles(std::move(mesh), std::move(voxels.triangles), parts.lattice.origin());
-    end_stage("triangle clusters");
+    const Eigen::Vector3d origin = parts.voxels ? parts.voxels->lattice.origin() : middle_of(mesh);
+    parts.triangles.emplace(std::move(mesh), origin);
+    stages.end("triangle clusters");
+  } else {
+    parts.voxels->lists = {};
   }
   return tree_from(std::move(parts));
 }
 
 bool can_build_tree(const TriangleMesh& mesh, const BuildOptions& options, Progress* progress) {
+  const ScopedFloatEnvironment environment;
+  if (options.voxel_size == 0) return !flaw_without_voxels(mesh, options);
   return can_voxelize(mesh, voxelizer_options(options), progress);
 }
 

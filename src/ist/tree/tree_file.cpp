@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -8,6 +9,8 @@
 
 #include "ist/base/cancellation.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/platform/bit_cast.h"
+#include "ist/mesh/bounding_box.h"
 #include "ist/tree/mesh_source.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
@@ -23,7 +26,7 @@
 //     f64 × 3   the grid's corner      f64  voxel size
 //     u32       cells an axis          u32  depth
 //     u32       orientation            u32  sections: 1 balls, 2 triangles, 4 proximity, 8 slabs
-//     u64       hash of the mesh's file, 0 where unknown
+//     u64       hash of the mesh's file, 0 if unknown
 //     u8        unit: 0 unknown, 1 millimetre, 2 metre, 3 inch, 4 micrometre
 //     u8        frame: 0 unknown, 1 RAS, 2 LPS
 //     u16       0
@@ -37,6 +40,10 @@
 //                 f64 × 3 …, u32 × 3 … vertices, triangles
 //                 u32 …, u32 …         the lists' beginnings (leaves + 1), their entries
 //     proximity:  u32, u32 × depth, u32, u8 …   depth, nodes, leaves, masks
+//
+// A file whose voxel size and cells are 0 is of a tree without voxels. Its corner, depth and list
+// entries are 0 too, its one section has the triangles, and it lacks the nodes, masks, normals and
+// lists.
 //
 // Children's indices and cubes are not stored: they follow from the masks. Balls and slabs hold the
 // numbers of PackedBall and PackedSlab.
@@ -118,7 +125,7 @@ bool all_finite(const Float* values, std::size_t count) {
   return bad == 0;
 }
 
-// The length of the name is verified at once, and all else by verify_source().
+// Verifies the length of the name. verify_source() verifies the rest.
 MeshSource read_source(TreeReader& reader, const Header& header) {
   reader.require(header.name_bytes <= kMaxSourceName, "the mesh's name is longer than 255 bytes");
   const std::vector<char> name = reader.array<char>(header.name_bytes);
@@ -186,14 +193,8 @@ std::vector<std::vector<Block>> verified(const TreeReader& reader, const LinearO
   return blocks;
 }
 
-// A grid of make_lattice holds its mesh exactly, because both functions round alike.
-bool is_in_grid(const Lattice& lattice, const Eigen::Vector3d& vertex) {
-  const Eigen::Vector3d place = lattice.to_lattice(vertex);
-  return place.minCoeff() >= 0 && place.maxCoeff() <= lattice.cells;
-}
-
-void verify_triangles(const TreeReader& reader, const Lattice& lattice, const TriangleMesh& mesh,
-                      const TriangleLists& lists) {
+// Verifies the triangles of any tree.
+void verify_mesh(const TreeReader& reader, const TriangleMesh& mesh) {
   reader.require(
       mesh.vertices.empty() || all_finite(mesh.vertices.front().data(), 3 * mesh.vertices.size()),
       "a vertex is not finite");
@@ -202,6 +203,39 @@ void verify_triangles(const TreeReader& reader, const Lattice& lattice, const Tr
     for (const std::uint32_t vertex : triangle) {
       reader.require(vertex < mesh.vertices.size(),
                      "a triangle refers to a vertex that does not exist");
+    }
+  }
+}
+
+// Bit by bit, so that a file is written as it was read.
+bool is_zero(double number) { return bit_cast<std::uint64_t>(number) == 0; }
+
+bool is_without_voxels(const Header& header) {
+  return is_zero(header.voxel_size) && header.cells == 0;
+}
+
+// Verifies the header and the triangles of a tree without voxels.
+void verify_no_voxels(const TreeReader& reader, const Header& header, const TriangleMesh& mesh) {
+  reader.require(header.sections == kTrianglesSection, "without voxels it has other sections");
+  reader.require(
+      std::all_of(header.corner.begin(), header.corner.end(), is_zero) && header.depth == 0,
+      "it has a grid without a voxel size");
+  verify_mesh(reader, mesh);
+  reader.require(has_usable_extent(bounding_box(mesh)), "its extent is none that a mesh may have");
+}
+
+// A grid of make_lattice holds its mesh exactly, because both functions round alike.
+bool is_in_grid(const Lattice& lattice, const Eigen::Vector3d& vertex) {
+  const Eigen::Vector3d place = lattice.to_lattice(vertex);
+  return place.minCoeff() >= 0 && place.maxCoeff() <= lattice.cells;
+}
+
+void verify_triangles(const TreeReader& reader, const Lattice& lattice, const TriangleMesh& mesh,
+                      const TriangleLists& lists) {
+  verify_mesh(reader, mesh);
+  for (const Triangle& triangle : mesh.triangles) {
+    cancellation_point();
+    for (const std::uint32_t vertex : triangle) {
       reader.require(is_in_grid(lattice, mesh.vertices[vertex]), "a triangle leaves the grid");
     }
   }
@@ -221,54 +255,116 @@ void verify_triangles(const TreeReader& reader, const Lattice& lattice, const Tr
   }
 }
 
-std::uint64_t write(const SphereTree& tree, TreeWriter writer) {
-  const ScopedFloatEnvironment environment;
-  const Lattice& lattice = parts_of(tree).lattice;
+Header header_of(const SphereTree& tree) {
+  const Lattice lattice =
+      tree.has_voxels() ? voxels_of(tree).lattice : Lattice{.voxel_size = 0, .cells = 0};
   const MeshSource& source = tree.source();
   const std::uint32_t sections = (tree.has(SpherePolicy::kTight) ? kBallsSection : 0u) |
                                  (tree.has(SpherePolicy::kSlab) ? kSlabsSection : 0u) |
                                  (tree.triangles() ? kTrianglesSection : 0u) |
-                                 (parts_of(tree).proximity ? kProximitySection : 0u);
-  writer.value(Header{
-      lattice.corner, lattice.voxel_size, lattice.cells, static_cast<std::uint32_t>(lattice.depth),
-      static_cast<std::uint32_t>(tree.orientation()), sections, source.hash,
-      static_cast<std::uint8_t>(source.unit), static_cast<std::uint8_t>(tree.frame()), 0,
-      static_cast<std::uint32_t>(source.name.size())});
-  writer.array(source.name);
-  write_octree(writer, parts_of(tree).octree);
-  writer.array(parts_of(tree).normals);
+                                 (tree.has_proximity() ? kProximitySection : 0u);
+  return {lattice.corner,
+          lattice.voxel_size,
+          lattice.cells,
+          static_cast<std::uint32_t>(lattice.depth),
+          static_cast<std::uint32_t>(tree.orientation()),
+          sections,
+          source.hash,
+          static_cast<std::uint8_t>(source.unit),
+          static_cast<std::uint8_t>(tree.frame()),
+          0,
+          static_cast<std::uint32_t>(source.name.size())};
+}
+
+void write_mesh(TreeWriter& writer, const TriangleMesh& mesh, const TriangleLists& lists) {
+  writer.value(std::uint64_t{mesh.vertices.size()});
+  writer.value(std::uint64_t{mesh.triangles.size()});
+  writer.value(std::uint64_t{lists.ids.size()});
+  writer.array(
+      std::span(reinterpret_cast<const double*>(mesh.vertices.data()), 3 * mesh.vertices.size()));
+  writer.array(mesh.triangles);
+  writer.array(lists.first);
+  writer.array(lists.ids);
+}
+
+std::uint64_t write(const SphereTree& tree, TreeWriter writer) {
+  const ScopedFloatEnvironment environment;
+  writer.value(header_of(tree));
+  writer.array(tree.source().name);
+  if (!tree.has_voxels()) {
+    write_mesh(writer, *tree.triangles(), {});
+    return writer.commit();
+  }
+  const TreeVoxels& voxels = voxels_of(tree);
+  write_octree(writer, voxels.octree);
+  writer.array(voxels.normals);
   if (tree.has(SpherePolicy::kTight)) {
-    write_bounds<PackedBall>(writer, parts_of(tree).octree, parts_of(tree).bounds.balls);
+    write_bounds<PackedBall>(writer, voxels.octree, voxels.bounds.balls);
   }
   if (tree.has(SpherePolicy::kSlab)) {
-    write_bounds<PackedSlab>(writer, parts_of(tree).octree, parts_of(tree).bounds.slabs);
+    write_bounds<PackedSlab>(writer, voxels.octree, voxels.bounds.slabs);
   }
-  if (tree.triangles()) {
-    const TriangleMesh& mesh = parts_of(tree).triangles->mesh;
-    const TriangleLists& lists = parts_of(tree).triangles->lists;
-    writer.value(std::uint64_t{mesh.vertices.size()});
-    writer.value(std::uint64_t{mesh.triangles.size()});
-    writer.value(std::uint64_t{lists.ids.size()});
-    writer.array(
-        std::span(reinterpret_cast<const double*>(mesh.vertices.data()), 3 * mesh.vertices.size()));
-    writer.array(mesh.triangles);
-    writer.array(lists.first);
-    writer.array(lists.ids);
-  }
-  if (parts_of(tree).proximity) {
-    writer.value(static_cast<std::uint32_t>(parts_of(tree).proximity->octree.depth()));
-    write_octree(writer, parts_of(tree).proximity->octree);
+  if (tree.triangles() != nullptr) write_mesh(writer, *tree.triangles(), voxels.lists);
+  if (voxels.proximity) {
+    writer.value(static_cast<std::uint32_t>(voxels.proximity->octree.depth()));
+    write_octree(writer, voxels.proximity->octree);
   }
   return writer.commit();
+}
+
+using MeshAndLists = std::pair<TriangleMesh, TriangleLists>;
+
+// Reads the triangles, with one list for each of `leaves`, or without lists.
+MeshAndLists read_mesh(TreeReader& reader, const Header& header,
+                       std::optional<std::uint32_t> leaves) {
+  MeshAndLists read;
+  auto& [mesh, lists] = read;
+  const auto counts = reader.value<std::array<std::uint64_t, 3>>();
+  const auto coordinates = reader.array<std::array<double, 3>>(counts[0]);
+  for (const auto& [x, y, z] : coordinates) mesh.vertices.emplace_back(x, y, z);
+  mesh.triangles = reader.array<Triangle>(counts[1]);
+  mesh.frame = static_cast<PatientFrame>(header.frame);
+  mesh.unit = static_cast<LengthUnit>(header.unit);
+  if (leaves) lists.first = reader.array<std::uint32_t>(std::uint64_t{*leaves} + 1);
+  lists.ids = reader.array<std::uint32_t>(counts[2]);
+  return read;
+}
+
+void verify_header(TreeReader& reader, const Header& header, const MeshSource& source) {
+  reader.verify_checksum();
+  reader.require(header.sections <= 15, "it lists an unknown section");
+  reader.require(header.orientation <= static_cast<std::uint32_t>(Orientation::kAssumed),
+                 "its orientation is unknown");
+  verify_source(reader, header, source);
+}
+
+TreeParts parts_with(const Header& header, MeshSource source) {
+  TreeParts parts;
+  parts.orientation = static_cast<Orientation>(header.orientation);
+  parts.source = std::move(source);
+  parts.frame = static_cast<PatientFrame>(header.frame);
+  return parts;
+}
+
+SphereTree read_without_voxels(TreeReader& reader, const Header& header, MeshSource source) {
+  auto [mesh, lists] = read_mesh(reader, header, std::nullopt);
+  verify_header(reader, header, source);
+  verify_no_voxels(reader, header, mesh);
+  reader.require(lists.ids.empty(), "it has leaves' triangles without voxels");
+  TreeParts parts = parts_with(header, std::move(source));
+  const Eigen::Vector3d origin = middle_of(mesh);
+  parts.triangles.emplace(std::move(mesh), origin);
+  return tree_from(std::move(parts));
 }
 
 SphereTree read(TreeReader reader) {
   const ScopedFloatEnvironment environment;
   const auto header = reader.value<Header>();
   const auto sections = header.sections;
+  MeshSource source = read_source(reader, header);
+  if (is_without_voxels(header)) return read_without_voxels(reader, header, std::move(source));
   const Lattice lattice{header.corner, header.voxel_size, header.cells,
                         static_cast<int>(header.depth)};
-  MeshSource source = read_source(reader, header);
   StoredOctree stored = read_octree(reader, header.depth);
   std::vector<PackedNormal> normals = reader.array<PackedNormal>(stored.leaves);
 
@@ -276,50 +372,30 @@ SphereTree read(TreeReader reader) {
   if ((sections & kBallsSection) != 0) balls = read_bounds<PackedBall>(reader, stored);
   Levels<PackedSlab> slabs;
   if ((sections & kSlabsSection) != 0) slabs = read_bounds<PackedSlab>(reader, stored);
-  std::optional<std::pair<TriangleMesh, TriangleLists>> triangles;
-  if ((sections & kTrianglesSection) != 0) {
-    const auto counts = reader.value<std::array<std::uint64_t, 3>>();
-    triangles.emplace();
-    const auto coordinates = reader.array<std::array<double, 3>>(counts[0]);
-    for (const auto& [x, y, z] : coordinates) triangles->first.vertices.emplace_back(x, y, z);
-    triangles->first.triangles = reader.array<Triangle>(counts[1]);
-    triangles->first.frame = static_cast<PatientFrame>(header.frame);
-    triangles->first.unit = static_cast<LengthUnit>(header.unit);
-    triangles->second.first = reader.array<std::uint32_t>(std::uint64_t{stored.leaves} + 1);
-    triangles->second.ids = reader.array<std::uint32_t>(counts[2]);
-  }
+  std::optional<MeshAndLists> triangles;
+  if ((sections & kTrianglesSection) != 0) triangles = read_mesh(reader, header, stored.leaves);
   std::optional<StoredOctree> proximity;
   if ((sections & kProximitySection) != 0) {
     const auto proximity_depth = reader.value<std::uint32_t>();
     proximity = read_octree(reader, proximity_depth);
   }
 
-  reader.verify_checksum();
-  reader.require(sections <= 15, "it lists an unknown section");
+  verify_header(reader, header, source);
   reader.require(slabs.empty() || !balls.empty(), "it has slabs without balls");
-  reader.require(header.orientation <= static_cast<std::uint32_t>(Orientation::kAssumed),
-                 "its orientation is unknown");
-  verify_source(reader, header, source);
   verify_lattice(reader, lattice);
   if (triangles) verify_triangles(reader, lattice, triangles->first, triangles->second);
-  TreeParts parts{lattice,
-                  verified(reader, std::move(stored)),
-                  static_cast<Orientation>(header.orientation),
-                  std::move(normals),
-                  {},
-                  std::nullopt,
-                  std::nullopt,
-                  std::move(source),
-                  static_cast<PatientFrame>(header.frame)};
+  TreeParts parts = parts_with(header, std::move(source));
+  TreeVoxels& voxels = parts.voxels.emplace(
+      TreeVoxels{lattice, verified(reader, std::move(stored)), std::move(normals)});
   if (triangles) {
-    parts.triangles.emplace(std::move(triangles->first), std::move(triangles->second),
-                            lattice.origin());
+    parts.triangles.emplace(std::move(triangles->first), lattice.origin());
+    voxels.lists = std::move(triangles->second);
   }
-  parts.bounds.balls =
-      verified<BallBlock>(reader, parts.octree, std::move(balls), "a ball has no radius");
-  parts.bounds.slabs = verified<SlabBlock>(reader, parts.octree, std::move(slabs),
-                                           "a slab's numbers are out of range");
-  if (proximity) parts.proximity = ProximityTree{verified(reader, std::move(*proximity))};
+  voxels.bounds.balls =
+      verified<BallBlock>(reader, voxels.octree, std::move(balls), "a ball has no radius");
+  voxels.bounds.slabs = verified<SlabBlock>(reader, voxels.octree, std::move(slabs),
+                                            "a slab's numbers are out of range");
+  if (proximity) voxels.proximity = ProximityTree{verified(reader, std::move(*proximity))};
   return tree_from(std::move(parts));
 }
 

@@ -4,14 +4,17 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "ist/base/access.h"
+#include "ist/base/assert.h"
 #include "ist/mesh/mesh.h"
 #include "ist/mesh/surface_sides.h"
 #include "ist/tree/bound_blocks.h"
 #include "ist/tree/bounds.h"
+#include "ist/tree/frame_origin.h"
 #include "ist/tree/implicit_ball.h"
 #include "ist/tree/linear_octree.h"
 #include "ist/tree/sphere_tree.h"
@@ -23,13 +26,12 @@
 namespace ist {
 
 /// The triangles of a tree built with keep_triangles.
-struct LeafTriangles {
+struct TreeTriangles {
   /// @param oriented the mesh as oriented at build
-  LeafTriangles(TriangleMesh oriented, TriangleLists of_leaves, const Eigen::Vector3d& origin)
-      : mesh(std::move(oriented)), lists(std::move(of_leaves)), clusters(mesh, origin) {}
+  TreeTriangles(TriangleMesh oriented, const Eigen::Vector3d& origin)
+      : mesh(std::move(oriented)), clusters(mesh, origin) {}
 
   TriangleMesh mesh;          ///< mesh frame
-  TriangleLists lists;        ///< one list a leaf
   TriangleClusters clusters;  ///< about the tree's origin
 
   /// Returns the sides of the surface. The first call of this or of component_points(), by any
@@ -67,23 +69,16 @@ struct ProximityTree {
 
 namespace detail {
 
-/// The content of a SphereTree, for the library's own code. The code that makes a TreeParts must
-/// make its members fit each other.
-struct TreeParts {
+/// The voxels of a tree, folded into an octree with its bounds.
+struct TreeVoxels {
   Lattice lattice;
   LinearOctree octree;
-  Orientation orientation = Orientation::kAssumed;
-  std::vector<PackedNormal> normals;       ///< one a leaf
-  BoundBlocks bounds;                      ///< empty if not built
-  std::optional<LeafTriangles> triangles;  ///< only with keep_triangles
-  std::optional<ProximityTree> proximity;  ///< only if requested and not empty
-  MeshSource source = {};                  ///< as source_flaw() allows it
-  PatientFrame frame = PatientFrame::kUnknown;
+  std::vector<PackedNormal> normals;            ///< one a leaf
+  BoundBlocks bounds = {};                      ///< empty if not built
+  TriangleLists lists = {};                     ///< one list a leaf; empty without keep_triangles
+  std::optional<ProximityTree> proximity = {};  ///< only if requested and not empty
   /// The largest radius of a saved leaf ball, mesh units; set by SphereTree's constructor.
   double largest_saved_leaf = 0;
-  /// The bounding radius of all spheres round the tree's origin, mesh units; set by SphereTree's
-  /// constructor.
-  double bounding_radius = 0;
 
   /// The saved bounds of the nodes at `level`, 0 … depth, one block for each parent, a node of
   /// octree.nodes(level + 1). Precondition: has(kTight), or has(kSlab) for the slabs.
@@ -101,7 +96,8 @@ struct TreeParts {
     return implicit_ball(policy, lattice, level, cube_centre,
                          level == 0 ? std::uint8_t{0} : octree.mask(level, node));
   }
-  /// Returns the sphere that the traversal tests, which holds those of all leaves below the node.
+  /// Returns the sphere that the traversal tests. It holds the spheres of all leaves below the
+  /// node.
   [[nodiscard]] Ball nested_ball(SpherePolicy policy, int level, std::uint32_t node,
                                  const Eigen::Vector3d& cube_centre) const noexcept {
     return ist::nested_ball(policy, lattice, level, cube_centre,
@@ -131,14 +127,40 @@ struct TreeParts {
   }
 };
 
+/// The content of a SphereTree, for the library's own code. The code that makes a TreeParts must
+/// make its members fit each other. It has voxels, triangles or both.
+struct TreeParts {
+  std::optional<TreeVoxels> voxels;        ///< only with a voxel size
+  std::optional<TreeTriangles> triangles;  ///< only with keep_triangles
+  Orientation orientation = Orientation::kAssumed;
+  MeshSource source = {};  ///< as source_flaw() allows it
+  PatientFrame frame = PatientFrame::kUnknown;
+  FrameOrigin origin = {};  ///< set by SphereTree's constructor
+  /// The bounding radius of all spheres and triangles round the origin, mesh units; set by
+  /// SphereTree's constructor.
+  double bounding_radius = 0;
+};
+
 }  // namespace detail
 
 using detail::TreeParts;
+using detail::TreeVoxels;
 
 /// Returns the content of a tree.
 [[nodiscard]] inline const TreeParts& parts_of(const SphereTree& tree) noexcept {
   return detail::Access::parts(tree);
 }
+/// Returns the voxels of a tree. Precondition: it has voxels.
+[[nodiscard]] inline const TreeVoxels& voxels_of(const SphereTree& tree) noexcept {
+  IST_ASSERT(parts_of(tree).voxels);
+  return *parts_of(tree).voxels;
+}
+/// Throws kVoxelsMissing if the tree lacks voxels. The error names `body` and the remedy.
+void require_voxels(const SphereTree& tree, std::string_view body);
+
+/// Returns the middle of the box round all vertices in use: the origin of a tree without voxels.
+[[nodiscard]] Eigen::Vector3d middle_of(const TriangleMesh& mesh) noexcept;
+
 /// Makes a tree of its content.
 [[nodiscard]] inline SphereTree tree_from(TreeParts parts) {
   return detail::Access::made_of<SphereTree>(std::move(parts));

@@ -44,19 +44,21 @@ double round_to_nice_number(double size, int digits) {
   return number(fmt::format("{:.{}e}", rounded + number(last_digit), digits - 1));
 }
 
+std::optional<Error> extent_flaw(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max) {
+  if (has_usable_extent({box_min, box_max})) return std::nullopt;
+  return Error(ErrorCode::kMeshExtent,
+               fmt::format("the largest extent is {} units, outside [1e-12, 1e15]: scale the mesh",
+                           extent_of(box_min, box_max)));
+}
+
 std::optional<Error> lattice_flaw(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max,
                                   double voxel_size) {
   if (!(voxel_size > 0) || !std::isfinite(voxel_size)) {
     return Error(ErrorCode::kVoxelSizeInvalid,
                  fmt::format("voxel size {}: give a positive number of mesh units", voxel_size));
   }
+  if (std::optional<Error> flaw = extent_flaw(box_min, box_max)) return flaw;
   const double extent = extent_of(box_min, box_max);
-  if (!has_usable_extent({box_min, box_max})) {
-    return Error(
-        ErrorCode::kMeshExtent,
-        fmt::format("the largest extent is {} units, outside [1e-12, 1e15]: scale the mesh",
-                    extent));
-  }
   if (voxel_size > Lattice::kMaxRelativeSize * extent) {
     return Error(
         ErrorCode::kVoxelSizeInvalid,

@@ -67,6 +67,10 @@ struct Lattice {
 [[nodiscard]] Lattice make_lattice(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max,
                                    double voxel_size);
 
+/// Returns the error of a box whose extent no mesh may have, or nullopt.
+[[nodiscard]] std::optional<Error> extent_flaw(const Eigen::Vector3d& box_min,
+                                               const Eigen::Vector3d& box_max);
+
 /// Returns the error that make_lattice would throw, or nullopt.
 [[nodiscard]] std::optional<Error> lattice_flaw(const Eigen::Vector3d& box_min,
                                                 const Eigen::Vector3d& box_max, double voxel_size);

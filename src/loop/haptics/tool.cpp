@@ -80,7 +80,7 @@ std::optional<Vector6> Tool::motion(const EffectInput& input, TimedEffects& effe
 double surface_radius(const SphereTree& tree) noexcept {
   // The cubes of the leaves' parents hold the surface. The last node of a level is a sentinel.
   double farthest2 = 0;
-  const std::span<const OctreeNode> nodes = parts_of(tree).octree.nodes(1);
+  const std::span<const OctreeNode> nodes = voxels_of(tree).octree.nodes(1);
   for (const OctreeNode& node : nodes.first(nodes.size() - 1)) {
     const double x = node.centre[0], y = node.centre[1], z = node.centre[2];
     farthest2 = std::max(farthest2, (x * x + y * y) + z * z);

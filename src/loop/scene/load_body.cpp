@@ -21,6 +21,13 @@ void require_unit(const LoadedBody& body, LengthUnit unit, const Scene& scene) {
 
 void take_tree(LoadedBody& body, const std::filesystem::path& file, const Scene& scene) {
   body.tree = std::make_unique<const SphereTree>(read_tree(file));
+  if (!body.tree->has_voxels()) {
+    fail_at(
+        scene, fmt::format("{}.file", body.table),
+        fmt::format("{} has no voxels, which contacts need: name the mesh with a voxel_size, or "
+                    "build the tree with one",
+                    body.name));
+  }
   require_unit(body, body.tree->source().unit, scene);
   body.outside_is_known = body.tree->orientation() == Orientation::kOutward;
   body.frame = body.tree->frame();

@@ -119,7 +119,7 @@ TreeBuilder::Tree TreeBuilder::near_tree(const LoadedBody& body, double voxel_si
                              .spheres = SpherePolicy::kTable,
                              .keep_triangles = false,
                              .proximity = true});
-    if (!parts_of(*tree).proximity) {
+    if (!voxels_of(*tree).proximity) {
       fail_at(scene_, "effects.proximity",
               fmt::format("{} has no outside: repair the mesh, or take the table out", body.name));
     }

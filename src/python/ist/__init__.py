@@ -4,7 +4,7 @@ Lengths are in the meshes' unit, millimetres by habit. A pose is (4, 4) float64,
 fixed one: p_fixed = pose @ p_moving. Answers are structured arrays and named tuples.
 
 >>> import ist, numpy as np
->>> upper, lower = (ist.build(jaw, voxel_size=0.8) for jaw in ist.jaws())
+>>> upper, lower = (ist.build(jaw) for jaw in ist.jaws())
 >>> query = ist.Query(upper, lower)
 >>> query.intersects(np.eye(4))
 True
@@ -37,6 +37,7 @@ from ._errors import (
     NOT_PREPARED,
     POSE_INVALID,
     TRIANGLES_MISSING,
+    VOXELS_MISSING,
     BusyError,
     ChangeRefused,
     Error,

@@ -32,6 +32,7 @@ ROW: np.dtype[np.void]
 WORLD_PAIR: np.dtype[np.void]
 NOT_PREPARED: int
 TRIANGLES_MISSING: int
+VOXELS_MISSING: int
 POSE_INVALID: int
 NO_TRIANGLE: int
 UNKNOWN: int
@@ -113,7 +114,7 @@ class Tree:
 
 def build(
     mesh: Union[Path, _HasMesh, Tuple[ArrayLike, ArrayLike]],
-    voxel_size: float,
+    voxel_size: float = 0.0,
     *,
     spheres: Spheres = "default",
     keep_triangles: bool = True,

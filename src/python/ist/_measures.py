@@ -144,7 +144,7 @@ def rows(
     the fixed tree's origin. tests: the most of each search.
 
     >>> import ist, numpy as np
-    >>> upper, lower = (ist.build(jaw, voxel_size=0.8) for jaw in ist.jaws())
+    >>> upper, lower = (ist.build(jaw) for jaw in ist.jaws())
     >>> poses = np.tile(np.eye(4), (3, 1, 1))
     >>> poses[:, 2, 3] = 0, -1, -2
     >>> rows = ist.Query(upper, lower).rows(poses, want=["intersects"])
@@ -287,7 +287,7 @@ def signed_distance(tree, points, *, reach=np.inf, out=None, progress=None):
     self_intersecting is 1 if the surface intersects itself; signs are right all the same.
 
     >>> import ist
-    >>> box = ist.build(([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]), 0.5)
+    >>> box = ist.build(([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]))
     >>> ist.signed_distance(box, [[1, 1, 1], [1, 1, -2]])["distance"].round(3).tolist()
     [-0.577, 2.0]
     """

@@ -29,7 +29,7 @@ from ._c import (
 from ._errors import check, error_of, refuse
 from ._handle import Lone, Out
 from ._library import LIBRARY, bare
-from ._tree import SPHERES, need_tree, spheres_number
+from ._tree import need_tree, spheres_name, spheres_number
 
 _FLOAT64 = np.dtype(np.float64)
 _ANSWERS = (None, False, None, True)  # IST_ANSWER_UNKNOWN, NO, NEAR, YES
@@ -96,7 +96,7 @@ class Query(Lone):
     slow motion from pose to pose. workers: 2 for a resident thread that helps.
 
     >>> import ist, numpy as np
-    >>> upper, lower = (ist.build(jaw, voxel_size=0.8) for jaw in ist.jaws())
+    >>> upper, lower = (ist.build(jaw) for jaw in ist.jaws())
     >>> query = ist.Query(upper, lower)
     >>> pose = np.eye(4)
     >>> pose[2, 3] = -1.5                                   # the lower jaw goes down by 1.5 mm
@@ -144,7 +144,7 @@ class Query(Lone):
         self._found_at, self._sums_at, self._answer_at = byref(self._found), byref(self._sums), byref(self._answer)
         self._apart_at, self._met_at, self._listed_at = byref(self._apart), byref(self._met), byref(self._listed)
 
-    spheres = property(lambda self: SPHERES[self._info.spheres], doc="The bounds in use.")
+    spheres = property(lambda self: spheres_name(self._info.spheres), doc="The bounds in use; none without voxels.")
     target = property(lambda self: self._info.target.decode(), doc="The instruction set in use.")
     workers = property(lambda self: self._info.workers, doc="Threads that search, 1 or 2.")
     has_triangles = property(lambda self: bool(self._info.has_triangles), doc="Whether both trees have triangles.")
@@ -179,7 +179,7 @@ class Query(Lone):
             self._lock.release()
 
     def leaf_pairs(self, pose, *, out=None, most=None, tests=0, seconds=0.0):
-        """All pairs of voxels whose bounds overlap. p_fixed = pose @ p_moving.
+        """All pairs of voxels whose bounds overlap. p_fixed = pose @ p_moving. Both trees need voxels.
 
         out: an array of LEAF_PAIR that is filled; `pairs` is a view of it. Without it the answer holds all pairs, or the
         first `most` of them.
@@ -291,6 +291,8 @@ class Query(Lone):
 
     def contacts(self, pose, *, out=None, tests=0, seconds=0.0):
         """A few contacts, and the sums over all leaf pairs that forces are made of. p_fixed = pose @ p_moving.
+
+        Both trees need voxels.
 
         out: an array of CONTACT that is filled.
 

@@ -41,7 +41,7 @@ class Sweep(Handle):
     >>> import ist, numpy, pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as place:
     ...     for name, jaw in zip(["upper", "lower"], ist.jaws()):
-    ...         ist.build(jaw, voxel_size=1).save(f"{place}/{name}.ist")  # a mesh file will do as well
+    ...         ist.build(jaw).save(f"{place}/{name}.ist")  # a mesh file will do as well
     ...     job = pathlib.Path(place, "job.toml")
     ...     _ = job.write_text('''
     ... answers = ["intersects"]

@@ -23,6 +23,11 @@ def spheres_number(name):
     return SPHERES.index(name)
 
 
+def spheres_name(number):
+    """Returns the name of the spheres of a tree or a query; "none" without voxels."""
+    return SPHERES[number] if number else "none"
+
+
 class Tree(Handle):
     """A body prepared for queries, by build() or load(). It never changes; any number of threads may share it.
 
@@ -38,12 +43,15 @@ class Tree(Handle):
         check(LIBRARY.ist_tree_get_info(handle, ctypes.addressof(info)))
         self._info = info
 
-    voxel_size = property(lambda self: self._info.voxel_size, doc="The edge of a voxel, mesh units.")
-    leaves = property(lambda self: self._info.leaves, doc="The number of voxels on the surface.")
+    voxel_size = property(lambda self: self._info.voxel_size, doc="The edge of a voxel, mesh units; 0 without voxels.")
+    leaves = property(lambda self: self._info.leaves, doc="The number of voxels on the surface; 0 without voxels.")
     triangles = property(lambda self: self._info.triangles, doc="The number of triangles kept; 0: no exact answers.")
-    depth = property(lambda self: self._info.depth, doc="Levels above the leaves.")
+    depth = property(lambda self: self._info.depth, doc="Levels above the leaves; 0 without voxels.")
     nbytes = property(lambda self: self._info.bytes, doc="Memory in use, bytes.")
-    spheres = property(lambda self: SPHERES[self._info.spheres], doc="The tightest bounds: simple, table, tight, slab.")
+    spheres = property(
+        lambda self: spheres_name(self._info.spheres),
+        doc="The tightest bounds: simple, table, tight, slab; none without voxels.",
+    )
     unit = property(lambda self: UNITS[self._info.unit], doc="The unit of its lengths, where it is known.")
     frame = property(lambda self: FRAMES[self._info.frame], doc="The frame that the mesh's file names: ras, lps, unknown.")
     outward = property(lambda self: bool(self._info.outward), doc="Whether the surface is closed, so that inside is known.")
@@ -61,7 +69,7 @@ class Tree(Handle):
 
     @property
     def origin(self):
-        """The origin of the tree's frame, (3,), mesh coordinates: torques are about that of the fixed tree."""
+        """The origin of the tree's frame, (3,), mesh coordinates. Torques are about the fixed tree's origin."""
         return self._kept("origin", lambda: np.array(self._info.origin))
 
     @property
@@ -122,7 +130,9 @@ class Tree(Handle):
     def __repr__(self):
         if self._handle is None:
             return "<ist.Tree, freed>"
-        return f"<ist.Tree of {self.leaves} voxels of {self.voxel_size:g} and {self.triangles} triangles, {self.spheres}>"
+        voxels = f"{self.leaves} voxels of {self.voxel_size:g} and " if self.leaves else ""
+        kind = f", {self.spheres}" if self.leaves else ", no voxels"
+        return f"<ist.Tree of {voxels}{self.triangles} triangles{kind}>"
 
     def _kept(self, name, make):
         self._need()
@@ -151,7 +161,7 @@ def need_tree(tree, what):
 
 def build(
     mesh,
-    voxel_size,
+    voxel_size=0.0,
     *,
     spheres="default",
     keep_triangles=True,
@@ -164,17 +174,20 @@ def build(
     """Builds a tree from a mesh, on all cores.
 
     mesh: a path; (vertices, faces), (V, 3) and (T, 3), counter-clockwise seen from outside; or an object of another library
-    with vertices and faces (trimesh, open3d, meshio, vtkPolyData). voxel_size: the edge of a voxel, mesh units.
-    keep_triangles: for exact answers and all measures. weld: vertices at exactly one position count as one; all keep their
+    with vertices and faces (trimesh, open3d, meshio, vtkPolyData). voxel_size: the edge of a voxel, mesh units, for leaf pairs
+    and contacts; 0: no voxels, and triangles answer all else. spheres, proximity: of voxels.
+    keep_triangles: for exact answers and all measures; a tree without voxels needs them. weld: vertices at exactly one position count as one; all keep their
     numbers. frame: "ras" or "lps"; a file that names the other one is turned into it, so that x and y change their signs.
     progress: called with the part of the build that is done, 0 while a
     file is read; what it raises ends both. Raises InputError, FileError, MemoryLimitError.
 
     >>> import ist
     >>> upper, lower = ist.jaws()
-    >>> tree = ist.build(upper, voxel_size=1)
+    >>> tree = ist.build(upper)
     >>> tree.leaves, tree.outward
-    (21863, True)
+    (0, True)
+    >>> ist.build(upper, voxel_size=1).leaves
+    21863
     """
     kind = spheres_number(spheres)
     need_word(frame, FRAMES, "frame")

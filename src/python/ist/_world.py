@@ -43,7 +43,7 @@ class World(Lone):
 
     A pose is (4, 4) float64, row by row, and maps a body's mesh to the world: p_world = pose @ p_body. Bodies are numbers, from
     0 in the order of add(). An answer has one row of WORLD_PAIR for each pair that is near, sorted: its `status` is 0, or
-    NOT_PREPARED or POSE_INVALID; all other pairs are apart, by more than `reach`. Of a pair the body added first is the fixed
+    NOT_PREPARED, POSE_INVALID, TRIANGLES_MISSING or VOXELS_MISSING; all other pairs are apart, by more than `reach`. Of a pair the body added first is the fixed
     one. `tests` and `seconds` limit a whole call. A world belongs to one thread at a time: another one gets a BusyError.
 
     reach: pairs whose root bounds are no farther apart are near too, mesh units. threads: threads that ask pairs; the answer does
@@ -51,7 +51,7 @@ class World(Lone):
     of Query, for all pairs; contacts=-1: the sums alone.
 
     >>> import ist, numpy as np
-    >>> upper, lower = (ist.build(jaw, voxel_size=0.8) for jaw in ist.jaws())
+    >>> upper, lower = (ist.build(jaw) for jaw in ist.jaws())
     >>> world = ist.World()
     >>> a, b = world.add(upper, name="upper"), world.add(lower, name="lower")
     >>> world.reserve()

@@ -78,7 +78,7 @@ std::vector<StepFront> record_fronts(const SphereTree& fixed, const SphereTree& 
                                      SearchLevels last) {
   const ScopedFloatEnvironment environment;
   const SearchPlan plan(fixed, moving, policy, last);
-  const auto relative = relative_pose(pose, parts_of(fixed).lattice, parts_of(moving).lattice);
+  const auto relative = relative_pose(pose, parts_of(fixed).origin, parts_of(moving).origin);
   if (!relative) {
     throw_error(ErrorCode::kPoseInvalid, "pose: it is no rigid motion: {}", why_not_rigid(pose));
   }

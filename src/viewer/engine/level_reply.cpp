@@ -7,12 +7,12 @@ namespace ist::viewer {
 namespace {
 
 void fill_slabs(const SphereTree& tree, int level, Reply& reply) {
-  const TreeParts& parts = parts_of(tree);
-  const std::uint32_t parents = level == tree.depth() ? 1 : parts.octree.node_count(level + 1);
+  const TreeVoxels& voxels = voxels_of(tree);
+  const std::uint32_t parents = level == tree.depth() ? 1 : voxels.octree.node_count(level + 1);
   std::vector<float> normals, offsets, halves;
   for (std::uint32_t parent = 0; parent < parents; ++parent) {
-    for (int slot = 0; slot < parts.octree.child_count(level + 1, parent); ++slot) {
-      const Slab slab = parts.saved_slab(level, parent, slot);
+    for (int slot = 0; slot < voxels.octree.child_count(level + 1, parent); ++slot) {
+      const Slab slab = voxels.saved_slab(level, parent, slot);
       for (int axis = 0; axis < 3; ++axis) {
         normals.push_back(static_cast<float>(slab.normal[axis]));
       }

@@ -77,9 +77,7 @@ BuildOptions PageBody::options(double voxel_size) const {
 }
 
 const SphereTree& PageBody::whole() {
-  if (!whole_)
-    whole_ = build_tree(
-        *mesh_, options(extent_ > 0 ? extent_ : 1));  // one without an extent is refused as such
+  if (!whole_) whole_ = build_tree(*mesh_, options(0));
   return *whole_;
 }
 
@@ -122,7 +120,7 @@ nlohmann::ordered_json PageBody::tree_facts() const {
   const SphereTree& tree = *tree_;
   nlohmann::ordered_json nodes = nlohmann::ordered_json::array();
   for (int level = 0; level <= tree.depth(); ++level) {
-    nodes.push_back(parts_of(tree).octree.node_count(level));
+    nodes.push_back(voxels_of(tree).octree.node_count(level));
   }
   return {{"voxel_size", tree.voxel_size()},
           {"leaves", tree.leaf_count()},

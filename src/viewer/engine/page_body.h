@@ -30,7 +30,7 @@ class PageBody {
   [[nodiscard]] const std::optional<SphereTree>& tree() const noexcept { return tree_; }
 
   /// The tree that `ist occlusion` takes, whose answers need triangles alone: as it was read, or of
-  /// one voxel as large as the mesh. Made at its first use.
+  /// the mesh without voxels. Made at its first use.
   [[nodiscard]] const SphereTree& whole();
 
   struct Built {

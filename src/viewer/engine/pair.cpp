@@ -78,7 +78,8 @@ nlohmann::ordered_json Pair::collide(const Eigen::Isometry3d& pose) {
            answers::header_line(
                "collide", {{"fixed", bodies_.fixed.source()}, {"moving", bodies_.moving.source()}},
                bodies_)},
-          {"line", answers::answer_line(0, answer, engine, answer.engines.front(), bodies_)},
+          {"line", answers::answer_line(
+                       0, answer, answers::LeafAnswer{engine, answer.engines.front()}, bodies_)},
           {"microseconds", median_time(engine, pose)}};
 }
 

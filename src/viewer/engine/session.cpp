@@ -158,8 +158,6 @@ void Session::build(const Asked& asked, Progress& progress, Reply& reply) {
                   other = moving.built(voxel_size, progress);
   answers::Bodies bodies{one.tree, other.tree,
                          std::min(one.tree.tightest(), other.tree.tightest())};
-  bodies.fixed_voxel_size = bodies.fixed.voxel_size();
-  bodies.moving_voxel_size = bodies.moving.voxel_size();
   name(bodies);
   auto pairs = std::make_unique<Pairs>(std::move(bodies));
   static_cast<void>(pairs->of({}));  // so that the first frame of a drag has it

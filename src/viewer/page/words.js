@@ -122,8 +122,8 @@ export function differInFrame(a, b) {
  */
 export function infoSentences(info) {
   const sentences = [];
-  if (info.kind === 'tree' && info.voxels === 1 && info.triangles) {
-    sentences.push('A mesh, kept in a tree of one voxel: the page builds its own tree.');
+  if (info.kind === 'tree' && info.voxels === null) {
+    sentences.push('A tree of triangles without voxels: the page builds its own tree.');
   } else if (info.kind === 'tree') {
     sentences.push(
       `A tree of ${count(info.voxels)} voxels of ${short(info.voxel_size)}, ` +

@@ -15,6 +15,8 @@ try:
 except ImportError:
     skip("/usr/bin/python3 has no matplotlib: scripts/setup.sh --python installs it")
 
+import ist
+
 SCRIPT = RECIPES / "distance_map.py"
 # Runs the script as if a module were not installed.
 WITHOUT = "import runpy, sys; sys.modules[sys.argv.pop(1)] = None; sys.argv.pop(0); runpy.run_path(sys.argv[0], run_name='__main__')"
@@ -24,7 +26,7 @@ class Figure(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.recipe = recipe("distance_map.py")
-        cls.ball, cls.block = map(cls.recipe.tree_of, (ball(9.5), block()))
+        cls.ball, cls.block = map(ist.build, (ball(9.5), block()))
         # The block, turned by a quarter, is 0.25 lower: its top is at 4.75 of the ball's coordinates, 0.25 above the pole.
         cls.figure = cls.recipe.draw(cls.ball, cls.block, motion((0, 0, 1), 90, (0, 0, -0.25)), reach=2.0)
         cls.upper, cls.lower, cls.bar = cls.figure.axes

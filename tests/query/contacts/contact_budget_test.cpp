@@ -343,7 +343,7 @@ TEST(StoppedContacts, ReadTheClockOftenEnough) {
   Search search(plan, kernels, 1 << 16);
   detail::ContactReducer reducer(scene.fixed, scene.moving, policy, {});
   const SearchPose pose = to_float(
-      *relative_pose(scene.pose, parts_of(scene.fixed).lattice, parts_of(scene.moving).lattice),
+      *relative_pose(scene.pose, parts_of(scene.fixed).origin, parts_of(scene.moving).origin),
       lengths_of(scene.fixed, policy), lengths_of(scene.moving, policy));
   ContactOutput sink(plan, kernels, pose, reducer.adder(), reducer.leaf_sums());
   const Budget budget{.deadline = Budget::Clock::time_point(std::chrono::seconds(1))};

@@ -101,7 +101,7 @@ struct PairSums {
   static_cast<void>(query.contacts(pose, points));
   const std::vector<LeafPair> leaves = ask(query, pose).leaf_pairs;
   EXPECT_EQ(leaves.size(), recorder.pairs.size());
-  const auto relative = relative_pose(pose, parts_of(fixed).lattice, parts_of(moving).lattice);
+  const auto relative = relative_pose(pose, parts_of(fixed).origin, parts_of(moving).origin);
   std::vector<PairSums> all;
   for (std::size_t i = 0; i < leaves.size() && i < recorder.pairs.size(); ++i) {
     if (!(recorder.pairs[i].weight > 0)) continue;

@@ -127,7 +127,7 @@ TEST(ContactManifold, HasTheMeansOfEachFixedLeaf) {
       SCOPED_TRACE(scene->name + ", " + std::string(to_string(policy)));
       Query query(scene->fixed, scene->moving, options_of(policy));
       ContactManifold points(scene->fixed, scene->moving, policy, {.points = 0, .margin = 2});
-      const LinearOctree& octree = parts_of(scene->fixed).octree;
+      const LinearOctree& octree = voxels_of(scene->fixed).octree;
       LeafSums leaves(octree, octree.leaf_count());
       detail::reducer_of(points).adder().stream = &leaves;
       static_cast<void>(query.contacts(scene->pose, points));

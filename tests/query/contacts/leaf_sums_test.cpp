@@ -76,7 +76,7 @@ class LeafSumsTest : public ::testing::Test {
   }
 
   const SphereTree tree_ = tree_of(icosphere(3, 1), 24);
-  const LinearOctree& octree_ = parts_of(tree_).octree;
+  const LinearOctree& octree_ = voxels_of(tree_).octree;
   std::vector<Pair> pairs_;
 };
 

@@ -30,14 +30,14 @@ std::vector<PlainContacts::Leaf> PlainContacts::leaves_of(const SphereTree& tree
   for (const Ball& ball : spheres[0]) {
     const Vector3d centre = tree.origin() + ball.centre;
     leaves.push_back({centre, centre, Vector3d::Zero(), Vector3d::Zero(), ball.radius, 0, 0});
-    const PackedNormal normal = parts_of(tree).normals[leaves.size() - 1];
+    const PackedNormal normal = voxels_of(tree).normals[leaves.size() - 1];
     leaves.back().normal = normal.coherence() * normal.direction();
   }
   if (policy != SpherePolicy::kSlab) return leaves;
   auto leaf = leaves.begin();
   for (std::uint32_t parent = 0; leaf != leaves.end(); ++parent) {
-    for (int slot = 0; slot < parts_of(tree).octree.child_count(1, parent); ++slot, ++leaf) {
-      const Slab slab = parts_of(tree).saved_slab(0, parent, slot);
+    for (int slot = 0; slot < voxels_of(tree).octree.child_count(1, parent); ++slot, ++leaf) {
+      const Slab slab = voxels_of(tree).saved_slab(0, parent, slot);
       leaf->slab_normal = slab.normal;
       leaf->offset = slab.offset;
       leaf->half = slab.half;

@@ -23,7 +23,7 @@ struct CacheCase {
         kernels(select_kernels(target)) {}
 
   [[nodiscard]] RelativePose relative(const Eigen::Isometry3d& pose) const {
-    return *relative_pose(pose, parts_of(fixed).lattice, parts_of(moving).lattice);
+    return *relative_pose(pose, parts_of(fixed).origin, parts_of(moving).origin);
   }
   [[nodiscard]] CacheFiller::Wanted wanted(
       const RelativePose& centre, double extent,

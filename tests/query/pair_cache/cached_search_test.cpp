@@ -226,7 +226,7 @@ TEST_P(ResumedSearch, FindsTheSamePairsInTheSameOrder) {
     const TreeLengths fixed = lengths_of(scene.fixed, GetParam()),
                       moving = lengths_of(scene.moving, GetParam());
     const RelativePose relative =
-        *relative_pose(scene.pose, parts_of(scene.fixed).lattice, parts_of(scene.moving).lattice);
+        *relative_pose(scene.pose, parts_of(scene.fixed).origin, parts_of(scene.moving).origin);
     // With the largest margin the rows of inner steps are longer than a piece.
     for (const double voxels : {0.0, 1.0, 5.0}) {
       const double voxel = std::min(scene.fixed.voxel_size(), scene.moving.voxel_size());
@@ -263,7 +263,7 @@ TEST_P(ResumedSearch, IsForgottenByTheNextOne) {
   const Scene& scene = solids()[1];
   const SearchPlan plan(scene.fixed, scene.moving, GetParam());
   const RelativePose relative =
-      *relative_pose(scene.pose, parts_of(scene.fixed).lattice, parts_of(scene.moving).lattice);
+      *relative_pose(scene.pose, parts_of(scene.fixed).origin, parts_of(scene.moving).origin);
   const SearchPose pose = to_float(relative, lengths_of(scene.fixed, GetParam()),
                                    lengths_of(scene.moving, GetParam()), 0.2);
   Search search(plan, select_kernels(""), 1 << 16);

@@ -33,7 +33,7 @@ std::vector<LeafBound> leaf_bounds(SearchSide side, const SphereTree& tree) {
   side.descends = true;
   side.emits_slots = false;
   std::vector<LeafBound> all;
-  const auto parents = static_cast<std::uint32_t>(parts_of(tree).octree.nodes(1).size() - 1);
+  const auto parents = static_cast<std::uint32_t>(voxels_of(tree).octree.nodes(1).size() - 1);
   FixedLanes lanes;
   for (std::uint32_t parent = 0; parent < parents; ++parent) {
     const std::uint32_t count = decode(side, parent, lanes, 0);

@@ -144,6 +144,28 @@ TEST(QueryDistance, HoldsTheDistance) {
   EXPECT_GT(apart, least(30, 2));
 }
 
+TEST(QueryDistance, HoldsTheDistanceWithVoxelsAndWithout) {
+  for (std::uint64_t seed = 0; seed < samples(std::uint64_t{40}); ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const TriangleMesh a = random_mesh(random), b = random_mesh(random);
+    const double away = std::ldexp(1.0, static_cast<int>(random.below(12)) - 4);
+    const Eigen::Isometry3d pose = pose_of(random.rotation(), away * random.direction());
+    const double exact = mesh_distance(a, b, pose);
+    for_voxels_or_none(a, b, 0.3, [&](const SphereTree& fixed, const SphereTree& moving) {
+      Query query(fixed, moving);
+      for (const double tolerance : {0.0, 0.01}) {
+        const DistanceResult found = query.distance(pose, tolerance);
+        ASSERT_EQ(found.status, QueryStatus::kDone);
+        const double rounding = kRounding * (1 + away);
+        EXPECT_LE(found.distance.lower, exact + rounding);
+        EXPECT_GE(found.distance.upper, exact - rounding);
+        EXPECT_LE(found.distance.upper - found.distance.lower, tolerance + rounding);
+      }
+    });
+  }
+}
+
 // Errors margin with the farthest vertex, of those that are there.
 TEST(QueryDistance, KnowsNothingOfAVertexThatNoTriangleNames) {
   TriangleMesh block = box({0, 0, 0}, {1, 1, 1});
@@ -290,6 +312,22 @@ TEST(QueryInside, TellsWhoIsInWhom) {
     EXPECT_EQ(query.inside(across).inside, Inside::kNone);
     EXPECT_EQ(query.inside(across).status, QueryStatus::kDone);
   }
+}
+
+TEST(QueryInside, IsTheSameWithVoxelsAndWithout) {
+  const auto expect = [](const TriangleMesh& a, const TriangleMesh& b, Inside inside) {
+    for_voxels_or_none(a, b, 0.3, [&](const SphereTree& fixed, const SphereTree& moving) {
+      Query query(fixed, moving);
+      const InsideResult found = query.inside(shift({0.1, 0, 0}));
+      EXPECT_EQ(found.status, QueryStatus::kDone);
+      EXPECT_EQ(found.inside, inside);
+    });
+  };
+  const TriangleMesh large = icosphere(2, 3), small = icosphere(1, 1);
+  expect(large, small, Inside::kMoving);
+  expect(small, large, Inside::kFixed);
+  expect(large, large, Inside::kNone);
+  expect(small, moved(small, {9, 0, 0}), Inside::kNone);
 }
 
 TEST(QueryInside, SaysWhyThereIsNoAnswer) {

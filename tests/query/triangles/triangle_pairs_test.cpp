@@ -189,6 +189,40 @@ TEST(Touches, WithoutTrianglesIsAtMostPossible) {
   EXPECT_EQ(Query(exact, exact).intersects(bad).status, QueryStatus::kInvalidPose);
 }
 
+// The voxels of either body are no part of an answer about triangles.
+TEST(TrianglePairs, AreTheSameWithVoxelsAndWithout) {
+  std::size_t touching = 0, asked = 0;
+  for (std::uint64_t seed = 0; seed < samples(std::uint64_t{40}); ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const TriangleMesh a = random_mesh(random), b = random_mesh(random);
+    const Eigen::Matrix3d rotation = random.rotation();
+    const Eigen::Vector3d to = a.vertices[random.below(a.vertices.size())] -
+                               rotation * b.vertices[random.below(b.vertices.size())];
+    const Eigen::Isometry3d pose =
+        pose_of(rotation, to + random.uniform(0, 0.2) * random.direction());
+    const std::vector<TrianglePair> wanted = meeting_pairs(build_tree(a), build_tree(b), pose);
+    for_voxels_or_none(a, b, 0.3, [&](const SphereTree& fixed, const SphereTree& moving) {
+      for (const int workers : {1, 2}) {
+        Query query(fixed, moving, {.workers = workers});
+        EXPECT_EQ(query.workers(), workers);
+        EXPECT_TRUE(query.has_triangles());
+        EXPECT_EQ(ask_exact(query, pose), wanted);
+        EXPECT_EQ(query.intersects(pose).answer,
+                  wanted.empty() ? ist::Answer::kNo : ist::Answer::kYes);
+        EXPECT_TRUE(query.intersects(pose).complete);
+        std::vector<NearPair> near(1 << 16);
+        const NearPairsResult found = query.near_pairs(pose, 0, near);
+        EXPECT_EQ(found.status, QueryStatus::kDone);
+        EXPECT_GE(found.near_pairs, wanted.size());
+      }
+    });
+    touching += wanted.empty() ? 0U : 1U;
+    ++asked;
+  }
+  EXPECT_GT(touching, asked / 8);
+}
+
 TEST(PairList, HoldsTheFirstPairsInOrder) {
   Random random(3);
   for (const std::size_t scratch : {0u, 70u, 5000u}) {

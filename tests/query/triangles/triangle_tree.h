@@ -22,10 +22,22 @@ namespace ist::test {
   return tree_with_triangles(mesh, box.sizes().maxCoeff() / cells);
 }
 
+/// Each pair of two bodies, with voxels and without them.
+template <class Ask>
+void for_voxels_or_none(const TriangleMesh& fixed, const TriangleMesh& moving, double voxel_size,
+                        const Ask& ask) {
+  const SphereTree fixed_trees[] = {tree_with_triangles(fixed, voxel_size), build_tree(fixed)},
+                   moving_trees[] = {tree_with_triangles(moving, voxel_size), build_tree(moving)};
+  for (const SphereTree& a : fixed_trees) {
+    for (const SphereTree& b : moving_trees) ask(a, b);
+  }
+}
+
 /// The same tree without its triangles: as it would have been built.
 [[nodiscard]] inline SphereTree without_triangles(const SphereTree& tree) {
-  return tree_from({parts_of(tree).lattice, parts_of(tree).octree, tree.orientation(),
-                    parts_of(tree).normals, parts_of(tree).bounds, std::nullopt, std::nullopt});
+  const TreeVoxels& voxels = voxels_of(tree);
+  return tree_from({TreeVoxels{voxels.lattice, voxels.octree, voxels.normals, voxels.bounds},
+                    std::nullopt, tree.orientation()});
 }
 
 }  // namespace ist::test

@@ -283,7 +283,7 @@ class WatchedSharedSearchThread : public SharedDeadlineThread {
   const Kernels kernels_ = watched_kernels();
   ist::SharedSearch search_{plan_, kernels_, 1 << 16, 0ns};
   const SearchPose pose_ = to_float(
-      *relative_pose(scene_.pose, parts_of(scene_.fixed).lattice, parts_of(scene_.moving).lattice),
+      *relative_pose(scene_.pose, parts_of(scene_.fixed).origin, parts_of(scene_.moving).origin),
       lengths_of(scene_.fixed, SpherePolicy::kSlab),
       lengths_of(scene_.moving, SpherePolicy::kSlab));
   const Budget budget_{.deadline = Clock::time_point(1s)};

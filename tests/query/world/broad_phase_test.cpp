@@ -72,7 +72,7 @@ SphereTree ball_of_cubes(double radius) {
 
 bool roots_meet(const SphereTree& a, const SphereTree& b, const Eigen::Isometry3d& pose,
                 double margin) {
-  const auto relative = relative_pose(pose, parts_of(a).lattice, parts_of(b).lattice);
+  const auto relative = relative_pose(pose, parts_of(a).origin, parts_of(b).origin);
   return test_roots(a, b, SpherePolicy::kSimple, *relative, margin).overlap;
 }
 
@@ -129,7 +129,7 @@ TEST(BroadPhase, HoldsBallsThatTouchWithTheirPads) {
       broad.set(1, ball_of(b, *body_pose(second), reach, 0));
       const BodyPose pose = between(*body_pose(first), *body_pose(second));
       const auto relative =
-          relative_pose(to_isometry(pose), parts_of(a).lattice, parts_of(b).lattice);
+          relative_pose(to_isometry(pose), parts_of(a).origin, parts_of(b).origin);
       const Eigen::Vector3d& way = relative->translation;
       return way.norm() <= radii + inner_ball_pad(radii, way.cwiseAbs().maxCoeff(), reach);
     };

@@ -56,6 +56,65 @@ TEST_F(WorldMemory, IsAskedForBeforeItIsReserved) {
   }
 }
 
+// Leaves take memory only if two bodies have voxels.
+TEST_F(WorldMemory, WithoutVoxelsIsOfTrianglesAlone) {
+  const TriangleMesh ball = icosphere(3, 1);
+  WorldOptions options = small_world();
+  options.query.front_pairs = 1000;
+  const auto world_with = [&](int voxels) {
+    World world(options);
+    for (int k = 0; k < 3; ++k) {
+      world.add(k < voxels ? build_tree(ball, {.voxel_size = 0.1}) : build_tree(ball),
+                shift({1.5 * k, 0, 0}));
+    }
+    const std::uint64_t needed = world.bytes_needed();
+    world.reserve();
+    EXPECT_EQ(world.bytes(), needed);
+    return needed;
+  };
+  EXPECT_EQ(world_with(1), world_with(0));
+  EXPECT_GT(world_with(2), world_with(1) + 2 * 1000 * 68);
+  EXPECT_EQ(world_with(3), world_with(2));
+}
+
+// Neither voxels nor triangles answer the pair, unless the world never looks at it.
+TEST_F(WorldMemory, PairWithNothingInCommonIsRefused) {
+  World world(small_world());
+  world.add(without_triangles(trees()[0]), shift({0, 0, 0}), "leaves");
+  world.add(build_tree(icosphere(3, 1)), shift({1.5, 0, 0}), "mesh");
+  world.add(trees()[1], shift({3, 0, 0}), "both");
+  for (const bool reserves : {false, true}) {
+    const std::optional<Error> error = error_of([&] {
+      if (reserves) {
+        world.reserve();
+      } else {
+        static_cast<void>(world.bytes_needed());
+      }
+    });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ErrorCode::kVoxelsMissing);
+    const std::string text = error->what();
+    EXPECT_NE(text.find("'mesh' has no voxels, and 'leaves' no triangles"), std::string::npos)
+        << text;
+  }
+  world.ignore(0, 1);
+  world.reserve();
+  const WorldAnswer near = world.ask(kIntersects);
+  ASSERT_EQ(near.pairs.size(), 1u);
+  EXPECT_EQ(near.pairs[0].bodies, (BodyPair{1, 2}));
+  EXPECT_EQ(near.pairs[0].answer, Answer::kYes);
+  world.set_pose(2, shift({0, 0.5, 0}));
+  const WorldAnswer both = world.ask(kIntersects);
+  ASSERT_EQ(both.pairs.size(), 2u);
+  EXPECT_EQ(both.pairs[0].answer, Answer::kNear);
+  EXPECT_EQ(both.pairs[1].answer, Answer::kYes);
+  const WorldAnswer felt = world.ask(kContacts);
+  EXPECT_EQ(felt.pairs[0].status, QueryStatus::kDone);
+  EXPECT_EQ(felt.pairs[1].status, QueryStatus::kNoVoxels);
+  EXPECT_EQ(world.manifold(1, 2), nullptr);
+  EXPECT_NE(world.manifold(0, 2), nullptr);
+}
+
 // One query a thread, whatever the number of bodies.
 TEST_F(WorldMemory, GrowsWithThreadsAndPairCaches) {
   WorldOptions options = small_world();

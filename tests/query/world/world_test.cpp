@@ -92,6 +92,54 @@ TEST(World, AnswersAsAQueryOfEachPair) {
   EXPECT_GT(meeting, least(10, 0));
 }
 
+// All but leaf pairs and contacts, whether the bodies of a pair have voxels or not.
+TEST(World, AnswersWithoutVoxels) {
+  Random random(4);
+  std::vector<PlacedTree> bodies = scattered(random, 8, 1.5);
+  World voxels = world_of(bodies);
+  for (std::size_t i = 0; i < bodies.size(); i += 2) {
+    bodies[i].tree = build_tree(*bodies[i].tree.triangles());
+  }
+  World world = world_of(bodies);
+  EXPECT_LE(world.bytes(), voxels.bytes());
+  std::vector<TrianglePair> pairs(1 << 16), wanted(1 << 16);
+  std::size_t met = 0;
+  for (const WorldPair& of_voxels : voxels.ask(kIntersects).pairs) {
+    if (of_voxels.answer != Answer::kYes) continue;
+    ++met;
+    const WorldAnswer touching = world.ask(kIntersects);
+    ASSERT_NE(find(touching, of_voxels.bodies), nullptr);
+    EXPECT_EQ(find(touching, of_voxels.bodies)->answer, Answer::kYes);
+  }
+  EXPECT_GT(met, 0u);
+  const auto count = [](const WorldAnswer& answer) {
+    std::uint64_t sum = 0;
+    for (const WorldPair& pair : answer.pairs) sum += pair.found;
+    return sum;
+  };
+  EXPECT_EQ(count(world.ask(triangle_pairs_in(pairs))),
+            count(voxels.ask(triangle_pairs_in(wanted))));
+  const WorldDistance least = world.distance(1e-3), of_voxels = voxels.distance(1e-3);
+  EXPECT_LE(least.distance.lower, of_voxels.distance.upper);
+  EXPECT_GE(least.distance.upper, of_voxels.distance.lower);
+
+  std::vector<LeafPair> leaves(1 << 16);
+  for (const WorldQuestion& question : {kContacts, leaf_pairs_in(leaves)}) {
+    const WorldAnswer answer = world.ask(question);
+    EXPECT_EQ(answer.status, QueryStatus::kDone);
+    EXPECT_FALSE(answer.complete);
+    for (const WorldPair& pair : answer.pairs) {
+      const bool both = pair.bodies.a % 2 == 1 && pair.bodies.b % 2 == 1;
+      EXPECT_EQ(pair.status, both ? QueryStatus::kDone : QueryStatus::kNoVoxels);
+      EXPECT_EQ(pair.complete, both);
+      if (both) continue;
+      EXPECT_EQ(pair.found, 0u);
+      EXPECT_EQ(pair.manifold, nullptr);
+      EXPECT_EQ(world.manifold(pair.bodies.a, pair.bodies.b), nullptr);
+    }
+  }
+}
+
 TEST(World, SaysHowFarThePosesOfAPairWere) {
   Random random(9);
   std::vector<PlacedTree> bodies = scattered(random, 3, 1);

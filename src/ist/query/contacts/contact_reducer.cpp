@@ -116,6 +116,7 @@ void require_in_range(const char* name, double value, double most) {
 }
 
 const SphereTree& with(const SphereTree& tree, SpherePolicy policy, const char* body) {
+  require_voxels(tree, body);
   tree.require(policy, body);
   return tree;
 }
@@ -169,7 +170,7 @@ void ContactReducer::bind(const SphereTree& fixed, const SphereTree& moving, Sph
   work_ = &work;
   work.adder.rule = contact_rule(scale_, rates_.lever);
   if (work.leaf_sums) {
-    work.leaf_sums->bind(parts_of(fixed).octree, std::max<std::size_t>(options_.max_leaves, 1));
+    work.leaf_sums->bind(voxels_of(fixed).octree, std::max<std::size_t>(options_.max_leaves, 1));
   }
   count_ = 0;
   sums_ = {};
@@ -220,6 +221,7 @@ std::size_t ContactReducer::most_leaves(const SphereTree& fixed,
 std::size_t ContactReducer::bytes_for(const SphereTree& fixed, const SphereTree& /*moving*/,
                                       const ManifoldOptions& options) {
   check(options);
+  require_voxels(fixed, "fixed");
   return bytes_of_work(options, most_leaves(fixed, options)) + options.points * sizeof(Contact);
 }
 

@@ -125,8 +125,8 @@ struct ContactWork {
 /// allocates nothing and locks nothing. One object belongs to one thread at a time.
 class ContactReducer {
  public:
-  /// Takes the policy of the query. Throws kPolicyMissing; kArgumentInvalid for an option out of
-  /// range; std::bad_alloc.
+  /// Takes the policy of the query. Throws kVoxelsMissing, kPolicyMissing; kArgumentInvalid for an
+  /// option out of range; std::bad_alloc.
   ContactReducer(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                  const ManifoldOptions& options,
                  const ScopedFloatEnvironment& environment = ScopedFloatEnvironment());
@@ -179,8 +179,8 @@ class ContactReducer {
   }
   /// Throws kArgumentInvalid for an option out of range.
   static void check(const ManifoldOptions& options);
-  /// Returns the bytes that a reducer for this fixed tree reserves. Throws kArgumentInvalid for an
-  /// option out of range.
+  /// Returns the bytes that a reducer for this fixed tree reserves. Throws kVoxelsMissing, and
+  /// kArgumentInvalid for an option out of range.
   [[nodiscard]] IST_LOOP_API static std::size_t bytes_for(const SphereTree& fixed,
                                                           const SphereTree& moving,
                                                           const ManifoldOptions& options);

@@ -17,7 +17,7 @@ MotionBound::MotionBound(const SphereTree& fixed, const Box& of_fixed, const Sph
 
 MotionBound::Box MotionBound::box_of(const SphereTree& tree) {
   // The cubes of the leaves' parents hold those of the leaves, in which the centres of bounds lie.
-  const LinearOctree& octree = parts_of(tree).octree;
+  const LinearOctree& octree = voxels_of(tree).octree;
   // The build's pad and the rounding of a bound.
   const double pad = 1e-6 * tree.voxel_size() + 0x1p-22 * tree.bounding_radius();
   Eigen::Vector3d low, high;

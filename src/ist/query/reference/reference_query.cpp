@@ -89,15 +89,15 @@ class Descent {
  private:
   // Reads the bounds of the node in child `slot` of `parent`.
   void bound(const ReferenceBody& body, std::uint32_t parent, int slot, Node& node) const {
-    const detail::TreeParts& parts = parts_of(body.tree);
+    const TreeVoxels& voxels = voxels_of(body.tree);
     if (!body.saved.empty()) {
       node.ball = body.saved[static_cast<std::size_t>(node.level)][node.index];
     } else if (is_implicit(policy_)) {
-      node.ball = parts.ball(policy_, node.level, node.index, node.cube_centre);
+      node.ball = voxels.ball(policy_, node.level, node.index, node.cube_centre);
     } else {
-      node.ball = parts.saved_ball(node.level, parent, slot);
+      node.ball = voxels.saved_ball(node.level, parent, slot);
     }
-    if constexpr (kSlabs) node.slab = parts.saved_slab(node.level, parent, slot);
+    if constexpr (kSlabs) node.slab = voxels.saved_slab(node.level, parent, slot);
   }
 
   [[nodiscard]] Node root(const ReferenceBody& body) const {
@@ -107,7 +107,7 @@ class Descent {
   }
 
   void open(const ReferenceBody& body, const Node& node, Children& children) const {
-    const LinearOctree& octree = parts_of(body.tree).octree;
+    const LinearOctree& octree = voxels_of(body.tree).octree;
     const double half = 0.5 * static_cast<double>(std::uint64_t{1} << (node.level - 1));
     children.count = 0;
     std::uint32_t index = octree.first_child(node.level, node.index);
@@ -162,8 +162,8 @@ class Descent {
       found_.push_back({a.index, b.index});
       return;
     }
-    const double edge_a = parts_of(fixed_.tree).lattice.edge(a.level),
-                 edge_b = parts_of(moving_.tree).lattice.edge(b.level);
+    const double edge_a = voxels_of(fixed_.tree).lattice.edge(a.level),
+                 edge_b = voxels_of(moving_.tree).lattice.edge(b.level);
     Children of_a, of_b;
     if (descends(a.level, edge_a, b.level, edge_b)) {
       open(fixed_, a, of_a);
@@ -213,7 +213,7 @@ struct ReferenceState {
   [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out) {
     const ScopedFloatEnvironment environment;
     const std::optional<RelativePose> relative =
-        relative_pose(pose, parts_of(fixed_.tree).lattice, parts_of(moving_.tree).lattice);
+        relative_pose(pose, parts_of(fixed_.tree).origin, parts_of(moving_.tree).origin);
     if (!relative) {
       QueryResult result;
       result.status = QueryStatus::kInvalidPose;

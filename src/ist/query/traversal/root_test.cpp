@@ -11,10 +11,12 @@
 namespace ist {
 namespace {
 
+// Returns the ball round all leaves, or without voxels round all triangles.
 Ball root_ball(const SphereTree& tree, SpherePolicy policy) noexcept {
+  if (!tree.has_voxels()) return {Eigen::Vector3d::Zero(), tree.bounding_radius()};
   return is_implicit(policy)
-             ? parts_of(tree).nested_ball(policy, tree.depth(), 0, Eigen::Vector3d::Zero())
-             : parts_of(tree).saved_ball(tree.depth(), 0, 0);
+             ? voxels_of(tree).nested_ball(policy, tree.depth(), 0, Eigen::Vector3d::Zero())
+             : voxels_of(tree).saved_ball(tree.depth(), 0, 0);
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ struct RootTest {
   DistanceInterval distance;
 };
 
-/// Tests the two roots, which overlap up to `margin`, mesh units, apart. Precondition: both trees
-/// have `policy`.
+/// Tests the two roots, which overlap up to `margin`, mesh units, apart. Precondition: each tree
+/// has `policy`, or no voxels.
 [[nodiscard]] RootTest test_roots(const SphereTree& fixed, const SphereTree& moving,
                                   SpherePolicy policy, const RelativePose& pose,
                                   double margin = 0) noexcept;

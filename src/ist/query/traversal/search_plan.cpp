@@ -22,7 +22,7 @@ float least_float(double value) {
   return nearest < value ? std::nextafter(nearest, HUGE_VALF) : nearest;
 }
 
-ImplicitLevel implicit_level(const TreeParts& tree, SpherePolicy policy, int level) noexcept {
+ImplicitLevel implicit_level(const TreeVoxels& tree, SpherePolicy policy, int level) noexcept {
   const double half = 0.5 * tree.lattice.edge(level);
   ImplicitLevel made{};
   for (int code = 0; code < 8; ++code) {
@@ -37,8 +37,8 @@ ImplicitLevel implicit_level(const TreeParts& tree, SpherePolicy policy, int lev
   return made;
 }
 
-// Makes all levels of a tree, the leaves first; none where the policy has blocks.
-void make_implicit_levels(const TreeParts& tree, SpherePolicy policy,
+// Makes all levels of a tree, the leaves first; none if the policy has blocks.
+void make_implicit_levels(const TreeVoxels& tree, SpherePolicy policy,
                           std::vector<ImplicitLevel>& levels) noexcept {
   levels.clear();
   for (int level = 0; is_implicit(policy) && level <= tree.lattice.depth; ++level) {
@@ -49,9 +49,9 @@ void make_implicit_levels(const TreeParts& tree, SpherePolicy policy,
 // Makes the view of the children at `level` that a step reads.
 SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level,
                          const std::vector<ImplicitLevel>& levels) noexcept {
-  const LinearOctree& octree = parts_of(tree).octree;
+  const LinearOctree& octree = voxels_of(tree).octree;
   const bool is_root = level == tree.depth();
-  const double edge = parts_of(tree).lattice.edge(level);
+  const double edge = voxels_of(tree).lattice.edge(level);
   SearchSide side{};
   side.nodes = octree.nodes(level + 1).data();
   side.masks = is_root ? &kRootMask : octree.masks(level + 1).data();
@@ -61,10 +61,10 @@ SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level,
     side.octant_offset = is_root ? 0 : static_cast<float>(0.5 * edge);
     return side;
   }
-  side.balls = parts_of(tree).balls(level).data();
+  side.balls = voxels_of(tree).balls(level).data();
   side.ball_unit = static_cast<float>(2 * edge * PackedBall::kUnit);
   if (policy == SpherePolicy::kSlab) {
-    side.slabs = parts_of(tree).slabs(level).data();
+    side.slabs = voxels_of(tree).slabs(level).data();
     side.slab_unit = static_cast<float>(edge * PackedSlab::kUnit * kSlabScale);
   }
   return side;
@@ -98,7 +98,7 @@ TreeShape::TreeShape(const SphereTree& tree) noexcept
     : voxel_size(tree.voxel_size()), depth(tree.depth()) {
   IST_ASSERT(static_cast<std::size_t>(depth) < kMostLevels);
   for (int level = 0; level <= depth; ++level) {
-    nodes[static_cast<std::size_t>(level)] = parts_of(tree).octree.node_count(level);
+    nodes[static_cast<std::size_t>(level)] = voxels_of(tree).octree.node_count(level);
   }
 }
 
@@ -114,7 +114,7 @@ SearchPlan::Sizes SearchPlan::sizes_of(const TreeShape& fixed, const TreeShape& 
 }
 
 void SearchPlan::require_addresses(const SphereTree& tree, std::string_view body) {
-  if (tree.depth() == 0 || parts_of(tree).octree.node_count(1) < kMostParents) return;
+  if (tree.depth() == 0 || voxels_of(tree).octree.node_count(1) < kMostParents) return;
   throw_error(ErrorCode::kMemoryLimit,
               "{}: a tree of {} leaves is too large to be searched: use larger voxels", body,
               tree.leaf_count());
@@ -134,8 +134,8 @@ SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, Sphere
 
 void SearchPlan::make(const SphereTree& fixed, const TreeShape& of_fixed, const SphereTree& moving,
                       const TreeShape& of_moving, SpherePolicy policy, SearchLevels last) noexcept {
-  make_implicit_levels(parts_of(fixed), policy, fixed_implicit_);
-  make_implicit_levels(parts_of(moving), policy, moving_implicit_);
+  make_implicit_levels(voxels_of(fixed), policy, fixed_implicit_);
+  make_implicit_levels(voxels_of(moving), policy, moving_implicit_);
   steps_.clear();
   sizes_.count = 0;
   walk(of_fixed, of_moving, last, [&](int a, int b, bool open_a, bool open_b, const Size& size) {
@@ -144,8 +144,8 @@ void SearchPlan::make(const SphereTree& fixed, const TreeShape& of_fixed, const 
                     false,
                     a == 0 && b == 0,
                     0,
-                    parts_of(fixed).normals.data(),
-                    parts_of(moving).normals.data()};
+                    voxels_of(fixed).normals.data(),
+                    voxels_of(moving).normals.data()};
     step.fixed.descends = open_a;
     step.moving.descends = open_b;
     step.fixed.emits_slots = a == last.fixed && b > last.moving;

@@ -20,6 +20,7 @@ struct SearchLevels {
 struct TreeShape {
   /// The most levels of a tree.
   static constexpr std::size_t kMostLevels = 18;
+  /// Precondition: the tree has voxels.
   explicit TreeShape(const SphereTree& tree) noexcept;
 
   /// Makes the levels no smaller than those of another tree of the same depth and voxel size.

@@ -365,7 +365,7 @@ TriangleSearch::Nearest TriangleSearch::nearest(const TrianglePose& pose, double
 
 ClusterPose TriangleSearch::cluster_pose(const Eigen::Isometry3d& rigid) const noexcept {
   return cluster_pose(
-      {rigid, *relative_pose(rigid, parts_of(*fixed_).lattice, parts_of(*moving_).lattice)});
+      {rigid, *relative_pose(rigid, parts_of(*fixed_).origin, parts_of(*moving_).origin)});
 }
 
 TriangleSearch::Near TriangleSearch::near(const TrianglePose& pose, double enough,

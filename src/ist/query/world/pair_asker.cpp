@@ -25,7 +25,7 @@ CacheOptions cache_options(const WorldOptions& options) {
 }
 
 SpherePolicy policy_of_any(const AskerRoom& room, const WorldOptions& options) noexcept {
-  return QueryState::policy_of(*room.any, *room.any, options.query);
+  return QueryState::policy_of(*room.query.voxels, *room.query.voxels, options.query);
 }
 
 // Returns whether no point of the moving body moved by more than a part of a voxel.
@@ -45,9 +45,17 @@ bool is_slow(const BodyPose& from, const BodyPose& to, const SphereTree& fixed,
 AskerRoom AskerRoom::of(std::span<const AskedBody> bodies, const WorldOptions& options) {
   AskerRoom room;
   std::vector<TreeShape> shapes;  // of each depth and voxel size, with the most nodes of any
-  int root_level = 0;             // of the clusters
+  std::size_t with_voxels = 0;
+  int root_level = 0;  // of the clusters
   for (const AskedBody& body : bodies) {
-    const TreeShape& shape = body.facts.shape;
+    if (room.any == nullptr || !body.facts.leaves) room.any = &body.tree;
+    if (const auto& triangles = parts_of(body.tree).triangles) {
+      room.query.triangles = &body.tree;
+      root_level = std::max(root_level, triangles->clusters.root_level());
+    }
+    if (!body.facts.leaves) continue;
+    if (++with_voxels > 1) room.query.voxels = &body.tree;
+    const TreeShape& shape = body.facts.leaves->shape;
     const auto like = std::find_if(shapes.begin(), shapes.end(),
                                    [&](const TreeShape& other) { return other.is_like(shape); });
     if (like == shapes.end()) {
@@ -55,11 +63,6 @@ AskerRoom AskerRoom::of(std::span<const AskedBody> bodies, const WorldOptions& o
     } else {
       like->include(shape);
     }
-    const auto& triangles = parts_of(body.tree).triangles;
-    if (room.any == nullptr || (triangles && room.any->triangles() == nullptr)) {
-      room.any = &body.tree;
-    }
-    if (triangles) root_level = std::max(root_level, triangles->clusters.root_level());
     room.leaves = std::max(room.leaves, ContactReducer::most_leaves(body.tree, options.manifold));
   }
   for (const TreeShape& fixed : shapes) {
@@ -79,22 +82,22 @@ AskerRoom AskerRoom::of(std::span<const AskedBody> bodies, const WorldOptions& o
 }
 
 CacheSlot::CacheSlot(const AskerRoom& room, const WorldOptions& options)
-    : plan(*room.any, *room.any, policy_of_any(room, options)),
-      cached(*room.any, *room.any, policy_of_any(room, options), plan,
+    : plan(*room.query.voxels, *room.query.voxels, policy_of_any(room, options)),
+      cached(*room.query.voxels, *room.query.voxels, policy_of_any(room, options), plan,
              select_kernels(options.query.target), cache_options(options),
              room.query.search_items) {}
 
 std::uint64_t CacheSlot::bytes_for(const AskerRoom& room, const WorldOptions& options) {
-  const SearchPlan plan(*room.any, *room.any, policy_of_any(room, options));
+  const SearchPlan plan(*room.query.voxels, *room.query.voxels, policy_of_any(room, options));
   return CachedSearch::bytes_for(plan, cache_options(options), room.query.search_items);
 }
 
 void CacheSlot::bind(BodyPair pair, const AskedBody& a, const AskedBody& b,
                      SpherePolicy policy) noexcept {
   bodies = pair;
-  plan.bind(a.tree, a.facts.shape, b.tree, b.facts.shape, policy);
+  plan.bind(a.tree, a.facts.leaves->shape, b.tree, b.facts.leaves->shape, policy);
   cached.bind(a.tree, b.tree, policy,
-              MotionBound(a.tree, a.facts.box, b.tree, b.facts.box, policy));
+              MotionBound(a.tree, a.facts.leaves->box, b.tree, b.facts.leaves->box, policy));
 }
 
 CacheSlots::CacheSlots(std::size_t count, const AskerRoom& room, const WorldOptions& options) {
@@ -129,14 +132,17 @@ void CacheSlots::forget() noexcept {
 }
 
 PairAsker::PairAsker(const AskerRoom& room, const WorldOptions& options)
-    : work_(std::make_unique<ContactWork>(options.manifold, room.leaves)),
+    : work_(room.has_leaves() ? std::make_unique<ContactWork>(options.manifold, room.leaves)
+                              : nullptr),
       query_(Access::made_of<Query>(std::make_unique<QueryState>(
           *room.any, *room.any, without_cache(options), ScopedFloatEnvironment(), room.query))),
       state_(&Access::state(query_)) {}
 
 std::uint64_t PairAsker::bytes_for(const AskerRoom& room, const WorldOptions& options) {
-  return QueryState::bytes_for(*room.any, *room.any, without_cache(options), room.query) +
-         ContactReducer::bytes_of_work(options.manifold, room.leaves);
+  const std::size_t bytes =
+      QueryState::bytes_for(*room.any, *room.any, without_cache(options), room.query);
+  if (!room.has_leaves()) return bytes;
+  return bytes + ContactReducer::bytes_of_work(options.manifold, room.leaves);
 }
 
 Query& PairAsker::bind(const AskedBody& a, const AskedBody& b, const PairMemory& memory,

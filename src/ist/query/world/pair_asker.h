@@ -22,13 +22,17 @@ struct AskerRoom {
   /// Measures the bodies. Cost: 0.1 µs for each pair of different depths or voxel sizes.
   static AskerRoom of(std::span<const AskedBody> bodies, const WorldOptions& options);
 
-  const SphereTree* any = nullptr;  ///< one of the trees, with triangles if any has them
+  const SphereTree* any = nullptr;  ///< one of the trees, without voxels if any has none
   QueryRoom query;
   std::size_t leaves = 1;  ///< that a ContactWork keeps apart
+
+  /// Returns whether two bodies have voxels: else no pair is asked about leaves.
+  [[nodiscard]] bool has_leaves() const noexcept { return query.voxels != nullptr; }
 };
 
 /// The pair cache of a pair that moves slowly.
 struct CacheSlot {
+  /// Precondition: room.has_leaves(), for bytes_for() too.
   CacheSlot(const AskerRoom& room, const WorldOptions& options);
   [[nodiscard]] static std::uint64_t bytes_for(const AskerRoom& room, const WorldOptions& options);
 
@@ -85,7 +89,9 @@ class PairAsker {
   /// @param cached    the pair cache of the pair, or null
   [[nodiscard]] Query& bind(const AskedBody& a, const AskedBody& b, const PairMemory& memory,
                             bool of_leaves, CachedSearch* cached) noexcept;
-  /// Binds a manifold to the same pair.
+  /// Returns whether the pair can be asked about leaves.
+  [[nodiscard]] bool has_leaves() const noexcept { return state_->has_leaves(); }
+  /// Binds a manifold to the same pair. Precondition: has_leaves().
   void bind(ContactManifold& manifold) noexcept {
     reducer_of(manifold).bind(state_->fixed, state_->moving, state_->policy, *work_);
   }
@@ -95,7 +101,7 @@ class PairAsker {
   }
 
  private:
-  std::unique_ptr<ContactWork> work_;
+  std::unique_ptr<ContactWork> work_;  // null if no pair is asked about leaves
   Query query_;
   QueryState* state_;  // of the query
 };

@@ -112,7 +112,7 @@ struct WorldPair {
   std::uint64_t written = 0;       ///< how many are there, from `first` on
   std::uint64_t sphere_tests = 0;  ///< as Budget::tests counts them
   double rotation_error = 0;       ///< the larger one of the poses that both bodies were given
-  /// kContacts: World::manifold of the pair, or null if it was not asked.
+  /// kContacts: World::manifold of the pair, or null if it was not asked or a body lacks voxels.
   const ContactManifold* manifold = nullptr;
 };
 

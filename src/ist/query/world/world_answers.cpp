@@ -57,7 +57,7 @@ void take_distance(const DistanceResult& result, const BodyPose& fixed, WorldPai
 }
 
 // Asks the query of a pair. The span of the question is free from `pair.first` on.
-void ask_query(const WorldQuestion& question, Query& query, ContactManifold& manifold,
+void ask_query(const WorldQuestion& question, Query& query, ContactManifold* manifold,
                const PairAtPose& at, const BodyPose& fixed, const Budget& budget,
                WorldPair& pair) noexcept {
   const Eigen::Isometry3d pose = to_isometry(at.pose);
@@ -72,8 +72,13 @@ void ask_query(const WorldQuestion& question, Query& query, ContactManifold& man
       break;
     }
     case WorldQuestion::kContacts:
-      take_leaf_pairs(query.contacts(pose, manifold, budget), pair);
-      pair.manifold = &manifold;
+      if (manifold == nullptr) {  // a body lacks voxels
+        pair.status = QueryStatus::kNoVoxels;
+        pair.complete = false;
+        break;
+      }
+      take_leaf_pairs(query.contacts(pose, *manifold, budget), pair);
+      pair.manifold = manifold;
       break;
     case WorldQuestion::kLeafPairs: {
       const std::span<LeafPair> out = question.leaf_pairs.subspan(pair.first);
@@ -132,6 +137,7 @@ void prepare_memories(WorldState& s, WorldQuestion::Kind kind) noexcept {
     const PairAtPose& at = near[k];
     if (at.status != QueryStatus::kDone) continue;
     const detail::AskedBody a = s.asked(at.bodies.a), b = s.asked(at.bodies.b);
+    if (!a.facts.leaves || !b.facts.leaves) continue;
     slots.note(memories[k], at.pose, a, b,
                detail::QueryState::policy_of(a.tree, b.tree, s.options.query));
   }
@@ -153,8 +159,11 @@ void detail::WorldState::ask_pair(std::size_t thread, std::size_t k,
   const bool of_leaves = is_of_leaves(round.question.kind);
   Query& query = asker.bind(asked(at.bodies.a), asked(at.bodies.b), memory, of_leaves,
                             of_leaves ? reserved.slots.of(memory) : nullptr);
-  ContactManifold& manifold = reserved.manifolds[k];
-  if (round.question.kind == WorldQuestion::kContacts) asker.bind(manifold);
+  ContactManifold* manifold = nullptr;
+  if (round.question.kind == WorldQuestion::kContacts && asker.has_leaves()) {
+    manifold = &reserved.manifolds[k];
+    asker.bind(*manifold);
+  }
   ask_query(round.question, query, manifold, at, bodies[at.bodies.a].pose, budget, pair);
   asker.keep(memory);
 }

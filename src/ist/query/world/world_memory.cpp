@@ -1,9 +1,11 @@
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 
 #include "ist/base/access.h"
 #include "ist/base/counted.h"
+#include "ist/base/error.h"
 #include "ist/base/throw_error.h"
 #include "ist/query/world/world_state.h"
 
@@ -13,15 +15,20 @@ namespace {
 constexpr double kMegabyte = 1e6;
 
 // Returns the number of pair caches for so many pairs.
-std::size_t slots_for(std::size_t room, const WorldOptions& options) noexcept {
-  return options.query.front_pairs > 0 ? std::min(room, options.pair_caches) : 0;
+std::size_t slots_for(std::size_t room, const AskerRoom& sizes,
+                      const WorldOptions& options) noexcept {
+  if (!sizes.has_leaves() || options.query.front_pairs == 0) return 0;
+  return std::min(room, options.pair_caches);
 }
 
 // Returns the bytes of one near pair.
-std::uint64_t bytes_of_pair(const WorldOptions& options) noexcept {
-  return sizeof(PairAtPose) + 16 + PairMemories::bytes_for(1) + sizeof(WorldState::Candidate) +
-         2 * sizeof(WorldPair) + sizeof(WorldState::Felt) + sizeof(ContactManifold) +
-         sizeof(ContactReducer) + options.manifold.points * sizeof(Contact);
+std::uint64_t bytes_of_pair(const AskerRoom& sizes, const WorldOptions& options) noexcept {
+  const std::uint64_t bytes = sizeof(PairAtPose) + 16 + PairMemories::bytes_for(1) +
+                              sizeof(WorldState::Candidate) + 2 * sizeof(WorldPair) +
+                              sizeof(WorldState::Felt);
+  if (!sizes.has_leaves()) return bytes;
+  return bytes + sizeof(ContactManifold) + sizeof(ContactReducer) +
+         options.manifold.points * sizeof(Contact);
 }
 
 }  // namespace
@@ -37,13 +44,16 @@ WorldState::Reserved::Reserved(std::size_t most, WorldState& world, const AskerR
   felt.reserve(most);
   if (sizes.any == nullptr) return;
   const WorldOptions& options = world.options;
-  const SpherePolicy policy = QueryState::policy_of(*sizes.any, *sizes.any, options.query);
-  manifolds.reserve(most);
-  for (std::size_t k = 0; k < most; ++k) {
-    manifolds.push_back(Access::made_of<ContactManifold>(
-        std::make_unique<ContactReducer>(*sizes.any, policy, options.manifold)));
+  if (sizes.has_leaves()) {
+    const SphereTree& tree = *sizes.query.voxels;
+    const SpherePolicy policy = QueryState::policy_of(tree, tree, options.query);
+    manifolds.reserve(most);
+    for (std::size_t k = 0; k < most; ++k) {
+      manifolds.push_back(Access::made_of<ContactManifold>(
+          std::make_unique<ContactReducer>(tree, policy, options.manifold)));
+    }
   }
-  slots = CacheSlots(slots_for(most, options), sizes, options);
+  slots = CacheSlots(slots_for(most, sizes, options), sizes, options);
   for (std::size_t k = 0; k < options.threads; ++k) {
     askers.push_back(std::make_unique<PairAsker>(sizes, options));
   }
@@ -74,20 +84,38 @@ std::size_t WorldState::room_for(std::size_t near_pairs) const noexcept {
 }
 
 AskerRoom WorldState::sizes() const {
+  require_answers();
   std::vector<AskedBody> all;
   all.reserve(bodies.size());
   for (const Body& body : bodies) all.push_back({body.tree, *body.facts});
   return AskerRoom::of(all, options);
 }
 
+void WorldState::require_answers() const {
+  std::vector<BodyIndex> without_voxels, without_triangles;
+  for (BodyIndex k = 0; k < bodies.size(); ++k) {
+    if (!bodies[k].tree.has_voxels()) without_voxels.push_back(k);
+    if (bodies[k].tree.triangles() == nullptr) without_triangles.push_back(k);
+  }
+  for (const BodyIndex a : without_voxels) {
+    for (const BodyIndex b : without_triangles) {
+      if (ignored.has({std::min(a, b), std::max(a, b)})) continue;
+      const auto quoted = [&](BodyIndex k) { return fmt::format("'{}'", bodies[k].name); };
+      const std::string nothing =
+          lacks_common(bodies[a].tree, quoted(a), bodies[b].tree, quoted(b));
+      throw Error(ErrorCode::kVoxelsMissing, "world: " + nothing);
+    }
+  }
+}
+
 std::uint64_t WorldState::bytes_for(std::size_t room, const AskerRoom& sizes,
                                     std::uint64_t limit) const {
   ContactReducer::check(options.manifold);
-  const std::uint64_t of_pairs = std::uint64_t{room} * bytes_of_pair(options);
+  const std::uint64_t of_pairs = std::uint64_t{room} * bytes_of_pair(sizes, options);
   std::uint64_t of_threads = 0, of_caches = 0;
   if (sizes.any != nullptr) {
     of_threads = std::uint64_t{options.threads} * PairAsker::bytes_for(sizes, options);
-    if (const std::size_t slots = slots_for(room, options); slots > 0) {
+    if (const std::size_t slots = slots_for(room, sizes, options); slots > 0) {
       of_caches = std::uint64_t{slots} * CacheSlot::bytes_for(sizes, options);
     }
   }
@@ -100,7 +128,7 @@ std::uint64_t WorldState::bytes_for(std::size_t room, const AskerRoom& sizes,
               "manifold.max_leaves or pair_caches, or raise max_memory",
               megabytes(of_pairs), counted(room, "near pair"), megabytes(of_threads),
               counted(options.threads, "thread"), megabytes(of_caches),
-              counted(slots_for(room, options), "pair cache"), megabytes(limit));
+              counted(slots_for(room, sizes, options), "pair cache"), megabytes(limit));
 }
 
 void WorldState::reserve(std::size_t near_pairs) {

@@ -74,8 +74,7 @@ PairAtPose WorldState::look(BodyPair pair) const noexcept {
   if (!broad.has(pair.a) || !broad.has(pair.b)) return at;
   const SphereTree &a = bodies[pair.a].tree, &b = bodies[pair.b].tree;
   at.pose = between(bodies[pair.a].pose, bodies[pair.b].pose);
-  const auto relative =
-      relative_pose(to_isometry(at.pose), parts_of(a).lattice, parts_of(b).lattice);
+  const auto relative = relative_pose(to_isometry(at.pose), parts_of(a).origin, parts_of(b).origin);
   if (!relative) {  // no double holds the way: over a third of the largest is between them
     at.status = QueryStatus::kNotPrepared;
     at.roots = {0.25 * kLargestDistance, kLargestDistance};

@@ -138,7 +138,10 @@ struct WorldState {
   [[nodiscard]] BodyPair checked(BodyIndex a, BodyIndex b) const;
   /// Returns for how many pairs reserve() makes room.
   [[nodiscard]] std::size_t room_for(std::size_t near_pairs) const noexcept;
+  /// Returns the sizes of the bodies. Throws as require_answers().
   [[nodiscard]] AskerRoom sizes() const;
+  /// Throws kVoxelsMissing if a pair can answer no question: see lacks_common().
+  void require_answers() const;
   /// Returns the bytes that reserve() takes for `room` pairs. Throws kMemoryLimit beyond `limit`.
   [[nodiscard]] std::uint64_t bytes_for(std::size_t room, const AskerRoom& sizes,
                                         std::uint64_t limit) const;

@@ -130,9 +130,10 @@ enum {
 /** How a tree is built. */
 typedef struct ist_build_options {
   size_t struct_size;     /**< the size of this struct, bytes */
-  double voxel_size;      /**< edge of a voxel, mesh units; required */
-  int32_t spheres;        /**< IST_SPHERES_...: the bounds to save */
-  int32_t drop_triangles; /**< 1: keep no triangles: no exact answers */
+  double voxel_size;      /**< edge of a voxel, mesh units; 0: no voxels, which only leaf pairs and
+                             contacts need */
+  int32_t spheres;        /**< IST_SPHERES_...: the bounds of voxels to save */
+  int32_t drop_triangles; /**< 1: keep no triangles: no exact answers; 0 without voxels */
   int32_t proximity;      /**< 1: add the voxels near the outside, for a scene's proximity effect */
   int32_t no_weld;        /**< 1: vertices at one position stay apart; 0: they count as one */
   uint64_t max_memory;    /**< memory limit, bytes; default 4 GiB */
@@ -143,8 +144,9 @@ typedef struct ist_build_options {
 
 /** Builds a tree, and turns a closed mesh outward where it is inside out. The mesh may be freed
  * afterwards. The call uses all cores. Errors: IST_VOXEL_SIZE_INVALID, IST_VOXEL_SIZE_TOO_SMALL,
- * IST_MESH_EXTENT, IST_MEMORY_LIMIT, IST_CANCELLED. Cost: 2.5 s for 1.7 million voxels on two
- * cores. */
+ * IST_ARGUMENT_INVALID for drop_triangles or proximity without voxels, IST_MESH_EXTENT,
+ * IST_MEMORY_LIMIT, IST_CANCELLED. Cost: 2.5 s for 1.7 million voxels on two cores, 0.2 s for the
+ * same 107,000 triangles without voxels. */
 IST_C_API ist_status ist_tree_build(const ist_mesh* mesh, const ist_build_options* options,
                                     ist_tree** tree) IST_NOEXCEPT;
 
@@ -179,19 +181,20 @@ IST_C_API ist_status ist_tree_get_mesh(const ist_tree* tree, ist_mesh** mesh) IS
 /** The properties of a tree; lengths in mesh units. */
 typedef struct ist_tree_info {
   size_t struct_size;         /**< the size of this struct, bytes */
-  double voxel_size;          /**< edge of a voxel */
-  uint64_t leaves;            /**< voxels on the surface */
+  double voxel_size;          /**< edge of a voxel; 0: the tree lacks voxels */
+  uint64_t leaves;            /**< voxels on the surface; 0 without voxels */
   uint64_t triangles;         /**< triangles kept */
   uint64_t bytes;             /**< memory in use */
-  int32_t depth;              /**< levels above the leaves */
-  int32_t spheres;            /**< IST_SPHERES_...: the tightest bounds in the tree */
+  int32_t depth;              /**< levels above the leaves; 0 without voxels */
+  int32_t spheres;            /**< IST_SPHERES_...: the tightest bounds; 0 without voxels */
   int32_t has_triangles;      /**< 1: the tree keeps its triangles */
   int32_t has_proximity;      /**< 1: the tree has the voxels near the outside */
   int32_t outward;            /**< 1: the mesh is closed and consistent, outside is known */
   int32_t unit;               /**< of lengths: 0 unknown, 1 mm, 2 m, 3 inch, 4 micrometre */
-  double origin[3];           /**< of the tree's frame: the root cube's centre, mesh coordinates */
-  double bounding_radius;     /**< around the origin; contains every sphere */
-  double largest_leaf_radius; /**< of the tightest spheres */
+  double origin[3];           /**< of the tree's frame, mesh coordinates: the root cube's centre, or
+                                 without voxels the middle of the triangles' box */
+  double bounding_radius;     /**< around the origin; contains every sphere and triangle */
+  double largest_leaf_radius; /**< of the tightest spheres; 0 without voxels */
   int32_t frame;              /**< IST_FRAME_... of the coordinates, as the mesh's file says it */
   int32_t reserved;           /**< 0 */
 } ist_tree_info;
@@ -206,8 +209,8 @@ IST_C_API ist_status ist_tree_self_intersections(const ist_tree* tree,
                                                  uint64_t* pairs) IST_NOEXCEPT;
 
 /** Copies the centres of the first `capacity` leaves, 3 mesh coordinates each, in the order of the
- * indices in leaf pairs. A leaf is a cube of edge voxel_size. `centres` may be NULL if
- * `capacity` is 0. Cost: 20 ns per leaf. */
+ * indices in leaf pairs. A leaf is a cube of edge voxel_size. None without voxels. `centres` may be
+ * NULL if `capacity` is 0. Cost: 20 ns per leaf. */
 IST_C_API ist_status ist_tree_copy_leaf_centres(const ist_tree* tree, double* centres,
                                                 size_t capacity) IST_NOEXCEPT;
 
@@ -236,8 +239,9 @@ typedef struct ist_query_options {
 } ist_query_options;
 
 /** Creates a query and reserves all its memory. `options` may be NULL. Both trees may be the same,
- * and may be freed afterwards. Errors: IST_POLICY_MISSING, IST_TARGET_MISSING, IST_MEMORY_LIMIT,
- * IST_OUT_OF_MEMORY, IST_ARGUMENT_INVALID. Cost: a few ms. */
+ * and may be freed afterwards. Errors: IST_POLICY_MISSING, also for spheres of a tree without
+ * voxels; IST_VOXELS_MISSING if one tree lacks voxels and the other no triangles;
+ * IST_TARGET_MISSING, IST_MEMORY_LIMIT, IST_OUT_OF_MEMORY, IST_ARGUMENT_INVALID. Cost: a few ms. */
 IST_C_API ist_status ist_query_create(const ist_tree* fixed, const ist_tree* moving,
                                       const ist_query_options* options,
                                       ist_query** query) IST_NOEXCEPT;
@@ -246,8 +250,8 @@ IST_C_API ist_status ist_query_create(const ist_tree* fixed, const ist_tree* mov
 typedef struct ist_query_info {
   size_t struct_size;    /**< the size of this struct, bytes */
   uint64_t bytes;        /**< memory reserved */
-  uint64_t contacts;     /**< most contacts; 0: no contacts */
-  int32_t spheres;       /**< IST_SPHERES_...: the bounds in use */
+  uint64_t contacts;     /**< most contacts; 0: no contacts, as without voxels */
+  int32_t spheres;       /**< IST_SPHERES_...: the bounds in use; 0 without voxels */
   int32_t workers;       /**< threads that search, 1 or 2 */
   int32_t has_triangles; /**< 1: both trees have triangles */
   int32_t reserved;      /**< zero */
@@ -302,7 +306,8 @@ typedef struct ist_budget {
 
 /** Finds all pairs of leaves with overlapping bounds, sorted by fixed and then by moving leaf.
  * `pairs` may be NULL if `capacity` is 0, to count; `budget` may be NULL: no limit. With a
- * budget the distance is known. Errors: IST_POSE_INVALID. Cost: 1 to 3 ns per test. [real time] */
+ * budget the distance is known. Errors: IST_POSE_INVALID; IST_VOXELS_MISSING. Cost: 1 to 3 ns per
+ * test. [real time] */
 IST_C_API ist_status ist_query_leaf_pairs(ist_query* query, const double pose[16],
                                           const ist_budget* budget, ist_leaf_pair* pairs,
                                           size_t capacity, ist_query_result* result) IST_NOEXCEPT;
@@ -331,8 +336,9 @@ typedef struct ist_contact_sums {
 
 /** Reduces all leaf pairs to a few contacts and to sums. `contacts` may be NULL where `capacity` is
  * 0; `sums` may be NULL; `budget` may be NULL: no limit. If the budget ends it, there are no
- * contacts and the sums make no force. Errors: IST_POSE_INVALID; IST_NOT_PREPARED where
- * options->contacts was -1. Cost: ist_query_leaf_pairs plus 10 to 15 ns per pair. [real time] */
+ * contacts and the sums make no force. Errors: IST_POSE_INVALID; IST_VOXELS_MISSING;
+ * IST_NOT_PREPARED if options->contacts was -1. Cost: ist_query_leaf_pairs plus 10 to 15 ns per
+ * pair. [real time] */
 IST_C_API ist_status ist_query_contacts(ist_query* query, const double pose[16],
                                         const ist_budget* budget, ist_contact* contacts,
                                         size_t capacity, ist_contact_sums* sums,

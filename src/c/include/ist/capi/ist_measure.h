@@ -242,8 +242,9 @@ typedef struct ist_row {
  * question say at pose i after ist_query_forget, bit by bit, whatever the number of threads. An
  * invalid pose is a row with its status, and no error. The query forgets what earlier poses left;
  * each further thread makes a query of its own. Errors: IST_ARGUMENT_INVALID; IST_TRIANGLES_MISSING
- * where a depth is asked for; IST_NOT_PREPARED where contacts are, and the query was created
- * without; IST_MEMORY_LIMIT, IST_CANCELLED. Cost: that of the calls, shared by the threads. */
+ * if a depth is asked for; IST_VOXELS_MISSING if leaf pairs or contacts are; IST_NOT_PREPARED if
+ * contacts are, and the query was created without; IST_MEMORY_LIMIT, IST_CANCELLED. Cost: that of
+ * the calls, shared by the threads. */
 IST_C_API ist_status ist_query_rows(ist_query* query, const double* poses, size_t count,
                                     const ist_rows_options* options, ist_row* rows) IST_NOEXCEPT;
 

@@ -77,7 +77,8 @@ enum {
   IST_INPUT_INVALID = 121,        /**< the content of a scene or another file is invalid */
   IST_FIXED_POINT_RANGE = 122,    /**< a number exceeds the hardware's fixed-point format */
   IST_MESH_TOO_LARGE = 123,       /**< the mesh file unpacks, or places, too much */
-  IST_PART_BUSY = 124             /**< another process is making this part of a sweep now */
+  IST_PART_BUSY = 124,            /**< another process is making this part of a sweep now */
+  IST_VOXELS_MISSING = 125        /**< a tree was built without voxels */
 };
 
 /** The caller's function that follows a call which may last, on the caller's thread. NULL in place

@@ -105,8 +105,8 @@ typedef struct ist_world_question {
 typedef struct ist_world_pair {
   uint32_t a,            /**< the body added first, which is the fixed one */
       b;                 /**< the other body, the moving one */
-  ist_status status;     /**< IST_OK; IST_POSE_INVALID, IST_TRIANGLES_MISSING; IST_NOT_PREPARED if
-                            no double holds the way between the bodies */
+  ist_status status;     /**< IST_OK; IST_POSE_INVALID, IST_TRIANGLES_MISSING, IST_VOXELS_MISSING;
+                            IST_NOT_PREPARED if no double holds the way between the bodies */
   int32_t answer;        /**< IST_ASK_INTERSECTS: IST_ANSWER_... */
   int32_t complete;      /**< 1: no budget ended the search; of a distance: it is narrow enough. Of
                             IST_ASK_NEAR 0 */

@@ -24,9 +24,9 @@ struct QuantizedPose {
 /// Converts a pose to fixed point. `pose` maps moving mesh coordinates to fixed mesh coordinates,
 /// and is first projected to a rigid motion (project_to_rigid).
 ///
-/// Throws kPoseInvalid if it is not rigid; kFixedPointRange if the moving voxels are at least 8
-/// times as large as the fixed ones, or if the pad or any centre that move_centre could return does
-/// not fit its format.
+/// Throws kPoseInvalid if it is not rigid; kPolicyMissing if a tree lacks voxels; kFixedPointRange
+/// if the moving voxels are at least 8 times as large as the fixed ones, or if the pad or any
+/// centre that move_centre could return does not fit its format.
 [[nodiscard]] IST_API QuantizedPose quantize_pose(const Eigen::Isometry3d& pose,
                                                   const SphereTree& fixed,
                                                   const SphereTree& moving);
