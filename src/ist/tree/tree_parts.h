@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ist/base/access.h"
+#include "ist/base/api.h"
 #include "ist/base/assert.h"
 #include "ist/mesh/mesh.h"
 #include "ist/mesh/surface_sides.h"
@@ -156,7 +157,7 @@ using detail::TreeVoxels;
   return *parts_of(tree).voxels;
 }
 /// Throws kVoxelsMissing if the tree lacks voxels. The error names `body` and the remedy.
-void require_voxels(const SphereTree& tree, std::string_view body);
+IST_LOOP_API void require_voxels(const SphereTree& tree, std::string_view body);
 
 /// Returns the middle of the box round all vertices in use: the origin of a tree without voxels.
 [[nodiscard]] Eigen::Vector3d middle_of(const TriangleMesh& mesh) noexcept;
