@@ -214,8 +214,8 @@ TEST_F(BodySizes, AMemoryLimitBlamesNoVoxelsWhereThereAreNone) {
   const CommandResult result = ist({"occlusion", ball(), ball(), "--json", "--max-memory", "1K"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(result.err,
-            "ist: the mesh has 320 triangles, and needs more than the allowed 1024 bytes of memory "
-            "with voxels of any size: allow more memory, or simplify it [memory-limit]\n");
+            "ist: the mesh has 320 triangles, which need 71680 bytes of memory; 1024 are allowed: "
+            "allow more memory, or simplify the mesh [memory-limit]\n");
 }
 
 TEST_F(BodySizes, VoxelsThatAreLargeForTheirBodyAreWarnedOf) {

@@ -71,13 +71,16 @@ std::optional<Error> flaw_without_voxels(const TriangleMesh& mesh, const BuildOp
   const Eigen::AlignedBox3d box = bounding_box(mesh);
   if (std::optional<Error> flaw = extent_flaw(box.min(), box.max())) return flaw;
   const std::uint64_t triangles = mesh.triangles.size();
-  if (triangles > kMaxTriangles || triangles * kClusterBytes > options.max_memory) {
-    return Error(
-        ErrorCode::kMemoryLimit,
-        fmt::format("the mesh has {} triangles, which need {} bytes of memory; {} are "
-                    "allowed, and {} triangles are the most: allow more memory, or "
-                    "simplify the mesh",
-                    triangles, triangles * kClusterBytes, options.max_memory, kMaxTriangles));
+  if (triangles > kMaxTriangles) {
+    return Error(ErrorCode::kMemoryLimit,
+                 fmt::format("the mesh has {} triangles, and {} are the most: simplify the mesh",
+                             triangles, kMaxTriangles));
+  }
+  if (triangles * kClusterBytes > options.max_memory) {
+    return Error(ErrorCode::kMemoryLimit,
+                 fmt::format("the mesh has {} triangles, which need {} bytes of memory; {} are "
+                             "allowed: allow more memory, or simplify the mesh",
+                             triangles, triangles * kClusterBytes, options.max_memory));
   }
   return std::nullopt;
 }

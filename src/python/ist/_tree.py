@@ -176,7 +176,8 @@ def build(
     mesh: a path; (vertices, faces), (V, 3) and (T, 3), counter-clockwise seen from outside; or an object of another library
     with vertices and faces (trimesh, open3d, meshio, vtkPolyData). voxel_size: the edge of a voxel, mesh units, for leaf pairs
     and contacts; 0: no voxels, and triangles answer all else. spheres, proximity: of voxels.
-    keep_triangles: for exact answers and all measures; a tree without voxels needs them. weld: vertices at exactly one position count as one; all keep their
+    keep_triangles: for exact answers and all measures; a tree without voxels needs them.
+    weld: vertices at exactly one position count as one; all keep their
     numbers. frame: "ras" or "lps"; a file that names the other one is turned into it, so that x and y change their signs.
     progress: called with the part of the build that is done, 0 while a
     file is read; what it raises ends both. Raises InputError, FileError, MemoryLimitError.

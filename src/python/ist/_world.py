@@ -43,8 +43,9 @@ class World(Lone):
 
     A pose is (4, 4) float64, row by row, and maps a body's mesh to the world: p_world = pose @ p_body. Bodies are numbers, from
     0 in the order of add(). An answer has one row of WORLD_PAIR for each pair that is near, sorted: its `status` is 0, or
-    NOT_PREPARED, POSE_INVALID, TRIANGLES_MISSING or VOXELS_MISSING; all other pairs are apart, by more than `reach`. Of a pair the body added first is the fixed
-    one. `tests` and `seconds` limit a whole call. A world belongs to one thread at a time: another one gets a BusyError.
+    NOT_PREPARED, POSE_INVALID, TRIANGLES_MISSING or VOXELS_MISSING; all other pairs are apart, by more than `reach`. Of a pair
+    the body added first is the fixed one. `tests` and `seconds` limit a whole call. A world belongs to one thread at a time:
+    another one gets a BusyError.
 
     reach: pairs whose root bounds are no farther apart are near too, mesh units. threads: threads that ask pairs; the answer does
     not depend on it. pair_caches: most pairs that have a pair cache at a time, with front_pairs. max_memory: bytes. All else as
