@@ -29,8 +29,8 @@ nlohmann::ordered_json numbers_of(const Eigen::Vector3d& v) { return {v[0], v[1]
 void fill_facing(const answers::Bodies& bodies, const Asked& asked, Progress& progress,
                  Reply& reply) {
   reply.json = {{"known", false}};
+  if (bodies.fixed.triangles() == nullptr || bodies.moving.triangles() == nullptr) return;
   Query query(bodies.fixed, bodies.moving, {.policy = bodies.query_policy()});
-  if (!query.has_triangles()) return;
   const Eigen::Isometry3d pose = asked.pose("pose");
   const double extent = bodies.extent();
   OcclusionOptions options;
