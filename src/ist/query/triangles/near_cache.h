@@ -17,7 +17,7 @@ namespace ist {
 /// near, so only the listed pairs are measured again. The next list is filled in slices, before the
 /// last one is used up, for a centre ahead of the body. No tick pays for a whole list.
 ///
-///              want            advance            take_up
+///              want            advance            find
 ///     kEmpty ---------> kFilling -------> kReady ----------> kKept
 ///
 /// A list becomes kEmpty again if it is used up, if it has no room, or if the body went another
