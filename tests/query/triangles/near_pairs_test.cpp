@@ -377,5 +377,28 @@ TEST(QueryDistance, TellsItsPoints) {
   }
 }
 
+// Bodies that intersect have the same common point on every target, whatever was asked before.
+TEST(QueryDistance, OfBodiesThatIntersectHasOnePointOnEveryTarget) {
+  const SphereTree ball = triangle_tree(icosphere(3, 1), 8);
+  for (const double x : {0.3, 1.2, 1.9}) {
+    const Eigen::Isometry3d pose = pose_of(Random(9).rotation(), {x, 0.1, 0.05});
+    std::vector<NearPair> found;
+    for (const std::string& target : all_targets()) {
+      for (const bool asks_before : {false, true}) {
+        Query query(ball, ball, {.target = target});
+        if (asks_before) {
+          EXPECT_EQ(query.intersects(pose).answer, Answer::kYes);
+        }
+        const DistanceResult result = query.distance(pose, 0);
+        ASSERT_TRUE(result.nearest);
+        EXPECT_EQ(result.distance.upper, 0);
+        found.push_back(*result.nearest);
+        EXPECT_EQ(found.back().triangles, found.front().triangles) << target;
+        EXPECT_EQ(found.back().fixed_point, found.front().fixed_point) << target;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ist::test

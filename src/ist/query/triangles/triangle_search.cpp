@@ -84,17 +84,20 @@ class NearestPair {
   bool visit(const ClusterPairs& clusters) noexcept {
     const float margin = rounded_up(2 * error() + double{context_.step.pose.error});
     Reach reaches{rounded_up(nearest_) + margin, margin};
-    return in_turns(
+    // Kernels list pairs in orders of their own. Of all that intersect here the first by its
+    // indices counts, so the search ends after the last of them.
+    const bool in_time = in_turns(
         clusters,
         [&](const ClusterPairs& rest) {
           return context_.kernels.near_clusters(context_.step, rest, reaches, context_.batch,
                                                 context_.found);
         },
         [&] {
-          const bool in_time = measure_found();
+          const bool measured = measure_found();
           context_.found.open.count = 0;
-          return in_time && nearest_ > 0;
+          return measured;
         });
+    return in_time && nearest_ > 0;
   }
   void measure(TriangleIds ids) noexcept {
     const TriangleCorners a = corners_of(context_.meshes.fixed, ids.fixed);
@@ -120,23 +123,13 @@ class NearestPair {
         std::min_element(found.squares, found.squares + count) - found.squares);
     if (count > 0) measure(found.open[first]);
     std::size_t measured = 0;
-    for (std::size_t k = 0; k < count && nearest_ > 0; ++k) {
+    for (std::size_t k = 0; k < count; ++k) {
       const double enough = nearest_ + 2 * error() + double{context_.step.pose.error};
       if (k == first || double{found.squares[k]} > enough * enough) continue;
       if (context_.is_late(measured++)) return false;
       measure(found.open[k]);
     }
-    if (count > 0 && nearest_ == 0) find_first(found.open);
     return true;
-  }
-  // Of pairs that meet the first in the order of the search counts: which one is measured first
-  // depends on the kernel.
-  void find_first(const TriangleList& list) noexcept {
-    for (std::size_t k = 0; k < list.count && !(list[k] == *ids_); ++k) {
-      if (!context_.meshes.meet(list[k])) continue;
-      ids_ = list[k];
-      return;
-    }
   }
 
   VisitorContext context_;
