@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "ist/base/api.h"
+
 namespace ist {
 
 using TriangleCorners = std::array<Eigen::Vector3d, 3>;
@@ -13,7 +15,8 @@ using TriangleCorners = std::array<Eigen::Vector3d, 3>;
 ///
 /// Cost: 20 ns where a plane separates them or a corner is in both, 50 to 200 ns otherwise, some µs
 /// where they lie in one plane. Allocates nothing.
-[[nodiscard]] bool triangles_meet(const TriangleCorners& a, const TriangleCorners& b) noexcept;
+[[nodiscard]] IST_LOOP_API bool triangles_meet(const TriangleCorners& a,
+                                               const TriangleCorners& b) noexcept;
 
 /// Tests exactly whether two triangles with the same first corner have another point in common.
 /// Both must have area.

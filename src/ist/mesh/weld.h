@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "ist/base/api.h"
+
 namespace ist {
 
 /// A hash table of vertices by their positions. It holds their indices alone.
@@ -30,6 +32,7 @@ class PositionTable {
 };
 
 /// Returns the first vertex at the position of each vertex. Cost: 50 ns a vertex.
-[[nodiscard]] std::vector<std::uint32_t> first_at_position(std::span<const Eigen::Vector3d> points);
+[[nodiscard]] IST_LOOP_API std::vector<std::uint32_t> first_at_position(
+    std::span<const Eigen::Vector3d> points);
 
 }  // namespace ist

@@ -36,4 +36,17 @@ struct RelativePose {
   return sum(turned(pose, point), pose.translation);
 }
 
+/// Returns how far any point of a box is at one pose from where it is at another. A displacement is
+/// affine in the point, so a corner has the longest way.
+[[nodiscard]] inline double longest_way(const Eigen::AlignedBox3d& box, const RelativePose& from,
+                                        const RelativePose& to) noexcept {
+  double most = 0;
+  for (int k = 0; k < 8; ++k) {
+    const Eigen::Vector3d corner = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(k));
+    const double way = square_in_order(difference(moved(from, corner), moved(to, corner)));
+    most = way > most ? way : most;
+  }
+  return std::sqrt(most);
+}
+
 }  // namespace ist

@@ -7,6 +7,7 @@
 #include "ist/base/float_environment.h"
 #include "loop/haptics/coupling.h"
 #include "loop/haptics/simulation_parts.h"
+#include "loop/haptics/wall/walk.h"
 #include "loop/haptics/wrench_limiter.h"
 
 namespace ist {
@@ -63,6 +64,10 @@ struct detail::SimulationState {
   [[nodiscard]] std::optional<HandChange> next_change(const Budget& budget) noexcept;
   [[nodiscard]] ChangeStatus allowed(std::size_t body, bool attach) const noexcept;
   [[nodiscard]] ChangeStatus change(std::size_t body, bool attach, const Budget& budget) noexcept;
+  [[nodiscard]] ChangeStatus change_by_wall(std::size_t body, bool attach,
+                                            const Budget& budget) noexcept;
+  [[nodiscard]] ChangeStatus change_by_springs(std::size_t body, bool attach,
+                                               const Budget& budget) noexcept;
   [[nodiscard]] ChangeStatus change_now(std::size_t body, bool attach,
                                         const TickBudget& budget) noexcept;
   [[nodiscard]] std::optional<Vector6> move(const VirtualCoupling::Stretch& stretch) noexcept;
@@ -74,7 +79,11 @@ struct detail::SimulationState {
     return {last_complete.tool, last_complete.contacts, last_complete.proximity, dt};
   }
 
+  void walk(const std::optional<Placement>& to, const TickBudget& budget, Tick& tick) noexcept;
+  void press(const std::optional<Placement>& to, const TickBudget& budget, Tick& tick) noexcept;
+
   HandBodies bodies;
+  std::optional<Wall> wall;
   PairQueries contacts, proximity;
   std::vector<PlannedChange> changes;
   std::vector<HandChange> tried;  // those of `changes`; its memory is reserved
@@ -83,6 +92,7 @@ struct detail::SimulationState {
   WrenchLimiter limiter;
   Tool tool;
   double dt;
+  std::optional<Walk> walker;  // of the wall
   Placement tool_pose;
   std::optional<Placement> device;  // at the tick before
   LastComplete last_complete, candidate;
@@ -96,6 +106,7 @@ struct detail::SimulationState {
 
 detail::SimulationState::SimulationState(SimulationParts parts)
     : bodies(std::move(parts.bodies)),
+      wall(std::move(parts.wall)),
       contacts(std::move(parts.contacts)),
       proximity(std::move(parts.proximity)),
       changes(std::move(parts.changes)),
@@ -105,9 +116,11 @@ detail::SimulationState::SimulationState(SimulationParts parts)
       tool(bodies.held_radius(), parts.max_step),
       dt(parts.dt),
       tool_pose(parts.start),
-      last_complete{parts.start, ToolContacts(contacts.size()), ToolContacts(proximity.size())},
+      last_complete{parts.start, ToolContacts(wall ? wall->pairs() : contacts.size()),
+                    ToolContacts(proximity.size())},
       candidate{parts.start, ToolContacts(contacts.size()), ToolContacts(proximity.size())} {
   IST_ASSERT(dt > 0);
+  if (wall) walker.emplace(Walk::Parts{bodies, *wall, tool, effects, coupling, dt});
   tried.reserve(changes.size());
   bodies.set_time(0, dt);
   place();
@@ -178,6 +191,11 @@ ChangeStatus detail::SimulationState::change(std::size_t body, bool attach,
   if (const ChangeStatus status = allowed(body, attach); status != ChangeStatus::kDone) {
     return status;
   }
+  return wall ? change_by_wall(body, attach, budget) : change_by_springs(body, attach, budget);
+}
+
+ChangeStatus detail::SimulationState::change_by_springs(std::size_t body, bool attach,
+                                                        const Budget& budget) noexcept {
   if (attach && last_complete.contacts.count > 0) return ChangeStatus::kTouching;
   attach ? bodies.attach(body, tool_pose) : bodies.release(body, tool_pose);
   place();
@@ -195,6 +213,33 @@ ChangeStatus detail::SimulationState::change(std::size_t body, bool attach,
   return known ? ChangeStatus::kTouching : ChangeStatus::kUnfinished;
 }
 
+// An attached body must be out of contact before and after. A released one must not meet a body
+// that stays in the hand.
+ChangeStatus detail::SimulationState::change_by_wall(std::size_t body, bool attach,
+                                                     const Budget& budget) noexcept {
+  using Touch = Wall::Touch;
+  const auto refused = [](Touch touch) {
+    return touch == Touch::kUnknown ? ChangeStatus::kUnfinished : ChangeStatus::kTouching;
+  };
+  if (attach) {
+    for (std::size_t other = 0; other < bodies.size(); ++other) {
+      if (other != body && !bodies.is_held(other)) continue;
+      const Touch touch = wall->touch(bodies, tool_pose, other, budget);
+      if (touch != Touch::kApart) return refused(touch);
+    }
+  }
+  attach ? bodies.attach(body, tool_pose) : bodies.release(body, tool_pose);
+  const Touch touch = wall->touch(bodies, tool_pose, body, budget);
+  if (touch == Touch::kApart || (touch == Touch::kTouching && !attach)) {
+    place();
+    last_complete.proximity.clear();
+    tool.set_radius(bodies.held_radius());
+    return ChangeStatus::kDone;
+  }
+  bodies.undo(body);
+  return refused(touch);
+}
+
 // The same between ticks: the tool has moved since its last contacts.
 ChangeStatus detail::SimulationState::change_now(std::size_t body, bool attach,
                                                  const TickBudget& budget) noexcept {
@@ -202,7 +247,7 @@ ChangeStatus detail::SimulationState::change_now(std::size_t body, bool attach,
     return status;
   }
   Tick now;
-  if (!query_contacts(budget, now)) return ChangeStatus::kUnfinished;
+  if (!wall && !query_contacts(budget, now)) return ChangeStatus::kUnfinished;
   return change(body, attach, budget.change);
 }
 
@@ -234,36 +279,79 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 void Simulation::fault() noexcept { state_->fault(); }
 
+// A tick with a wall: the tool walks to the device.
+void detail::SimulationState::walk(const std::optional<Placement>& to, const TickBudget& budget,
+                                   Tick& tick) noexcept {
+  tick.proximity = proximity.find(bodies, tool_pose, budget.proximity, candidate.proximity);
+  if (is_complete(tick.proximity)) std::swap(last_complete.proximity, candidate.proximity);
+  tick.change = next_change(budget.change);
+  ++ticks;
+  if (!to) {
+    wall->drop_contacts();
+    fault();
+    return;
+  }
+  const VirtualCoupling::Stretch stretch{motion_between(tool_pose, *to),
+                                         motion_between(device.value_or(*to), *to), dt};
+  const Placement before = tool_pose;
+  const Walk::End end =
+      walker->run(tool_pose, time,
+                  {*to, stretch.device, budget.contacts, budget.steps, last_complete.proximity},
+                  last_complete.contacts);
+  device = to;
+  last_complete.tool = tool_pose;
+  if (bodies.has_scripts()) {
+    bodies.set_time(time, dt);
+    place();
+  }
+  tick.contacts = end.search;
+  tick.contacts->complete = !end.held;
+  tick.held = end.held;
+  tick.halved = end.halved;
+  tick.steps = end.steps;
+  if (end.finite) {
+    const Vector6 gone = motion_between(before, tool_pose);
+    tick.wrench = limiter.limit(-coupling.wrench(stretch, gone), dt);
+  } else {
+    fault();
+  }
+  tick.points = wall->contacts();
+  tick.leaf_pairs = static_cast<double>(tick.points.size());
+}
+
+// A tick with springs, or without contacts.
+void detail::SimulationState::press(const std::optional<Placement>& to, const TickBudget& budget,
+                                    Tick& tick) noexcept {
+  tick.held = !query_contacts(budget, tick);
+  if (tick.held) {
+    go_back();
+  } else {
+    tick.change = next_change(budget.change);
+  }
+  ++ticks;
+  tick.leaf_pairs = last_complete.contacts.count;
+  if (!to) {
+    fault();
+    return;
+  }
+  const VirtualCoupling::Stretch stretch{motion_between(tool_pose, *to),
+                                         motion_between(device.value_or(*to), *to), dt};
+  const std::optional<Vector6> moved = tick.held ? Vector6(Vector6::Zero()) : move(stretch);
+  device = to;
+  if (moved) {
+    tick.wrench = limiter.limit(-coupling.wrench(stretch, *moved), dt);
+  } else {
+    fault();
+  }
+}
+
 Tick Simulation::tick(const std::optional<Placement>& device, const TickBudget& budget) noexcept {
   const ScopedFloatEnvironment environment;
   detail::SimulationState& state = *state_;
   Tick tick;
   tick.device = device.value_or(state.device.value_or(state.tool_pose));
   const std::uint64_t faults = state.limiter.faults();
-  tick.held = !state.query_contacts(budget, tick);
-  if (tick.held) {
-    state.go_back();
-  } else {
-    tick.change = state.next_change(budget.change);
-  }
-  ++state.ticks;
-  tick.leaf_pairs = state.last_complete.contacts.count;
-
-  if (!device) {
-    state.fault();
-  } else {
-    const VirtualCoupling::Stretch stretch{motion_between(state.tool_pose, *device),
-                                           motion_between(state.device.value_or(*device), *device),
-                                           state.dt};
-    const std::optional<Vector6> motion =
-        tick.held ? Vector6(Vector6::Zero()) : state.move(stretch);
-    state.device = device;
-    if (motion) {
-      tick.wrench = state.limiter.limit(-state.coupling.wrench(stretch, *motion), state.dt);
-    } else {
-      state.fault();
-    }
-  }
+  state.wall ? state.walk(device, budget, tick) : state.press(device, budget, tick);
   tick.fault = state.limiter.faults() != faults;
   tick.tool = state.tool_pose;
   return tick;
@@ -273,7 +361,8 @@ double Simulation::dt() const noexcept { return state_->dt; }
 const Placement& Simulation::tool_pose() const noexcept { return state_->tool_pose; }
 std::span<const EffectTime> Simulation::effects() const noexcept { return state_->effects.times(); }
 std::size_t Simulation::bytes() const noexcept {
-  return state_->contacts.bytes() + state_->proximity.bytes();
+  return state_->contacts.bytes() + state_->proximity.bytes() +
+         (state_->wall ? state_->wall->bytes() : 0);
 }
 
 ChangeStatus Simulation::attach(std::size_t body, const TickBudget& budget) noexcept {

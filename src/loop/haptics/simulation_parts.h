@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "loop/haptics/bodies/hand_bodies.h"
 #include "loop/haptics/bodies/pair_queries.h"
 #include "loop/haptics/tool.h"
+#include "loop/haptics/wall/wall.h"
 
 namespace ist::detail {
 
@@ -23,7 +25,8 @@ struct PlannedChange {
 /// The parts of a Simulation.
 struct SimulationParts {
   HandBodies bodies = {};
-  PairQueries contacts = {},                ///< empty if no effect needs contacts
+  std::optional<Wall> wall = {};            ///< keeps the tool out of fixed bodies
+  PairQueries contacts = {},                ///< of leaf pairs; empty if no effect needs them
       proximity = {};                       ///< empty if no effect needs proximity
   std::vector<PlannedChange> changes = {};  ///< by ascending time
   std::vector<std::unique_ptr<Effect>> effects = {};

@@ -52,29 +52,56 @@ double Tool::way(const Vector6& motion) const noexcept {
          radius_ * std::sqrt(motion.tail<3>().squaredNorm());
 }
 
-std::optional<Vector6> Tool::motion(const EffectInput& input, TimedEffects& effects,
-                                    const VirtualCoupling& coupling,
-                                    const VirtualCoupling::Stretch& stretch,
-                                    double scale) const noexcept {
-  const double most = scale * max_step_;
+namespace {
+
+// Makes the Newton steps of a motion. `next(stiffness, wanted)` returns the motion to take in place
+// of the wanted one.
+template <class Next>
+std::optional<Vector6> balance(const EffectInput& input, TimedEffects& effects,
+                               const VirtualCoupling& coupling,
+                               const VirtualCoupling::Stretch& stretch, const Next& next) noexcept {
   Vector6 motion = Vector6::Zero();
-  for (int step = 0; step < kNewtonSteps; ++step) {
+  for (int step = 0; step < Tool::kNewtonSteps; ++step) {
     Response response;
     coupling.respond(stretch, motion, response);
     // Steps cost the same, so the first one is timed for all: reading the clock takes as long as
     // some effects do.
     if (step == 0) {
-      effects.respond(input, motion, response, kNewtonSteps);
+      effects.respond(input, motion, response, Tool::kNewtonSteps);
     } else {
       effects.respond(input, motion, response);
     }
     if (!response.wrench.allFinite()) return std::nullopt;
     motion += Eigen::LDLT<Matrix6>(response.stiffness).solve(response.wrench);
-    const double way = this->way(motion);
-    if (!std::isfinite(way)) return std::nullopt;
-    if (way > most) motion *= most / way;
+    if (!std::isfinite(motion.squaredNorm())) return std::nullopt;
+    motion = next(response.stiffness, motion);
   }
   return motion;
+}
+
+}  // namespace
+
+std::optional<Vector6> Tool::motion(const EffectInput& input, TimedEffects& effects,
+                                    const VirtualCoupling& coupling,
+                                    const VirtualCoupling::Stretch& stretch,
+                                    double scale) const noexcept {
+  const double most = scale * max_step_;
+  return balance(input, effects, coupling, stretch, [&](const Matrix6&, const Vector6& wanted) {
+    const double way = this->way(wanted);
+    return way > most ? Vector6(wanted * (most / way)) : wanted;
+  });
+}
+
+std::optional<Vector6> Tool::motion(const EffectInput& input, TimedEffects& effects,
+                                    const VirtualCoupling& coupling,
+                                    const VirtualCoupling::Stretch& stretch, NearestMotion* bounds,
+                                    double tolerance) const noexcept {
+  return balance(input, effects, coupling, stretch,
+                 [&](const Matrix6& stiffness, const Vector6& wanted) -> Vector6 {
+                   if (bounds == nullptr) return wanted;
+                   bounds->solve(stiffness, wanted, tolerance);
+                   return bounds->motion();
+                 });
 }
 
 double surface_radius(const SphereTree& tree) noexcept {

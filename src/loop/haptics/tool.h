@@ -10,6 +10,7 @@
 #include "ist/haptics/simulation.h"
 #include "ist/tree/sphere_tree.h"
 #include "loop/haptics/coupling.h"
+#include "loop/haptics/wall/nearest_motion.h"
 
 namespace ist {
 
@@ -59,11 +60,20 @@ class Tool {
                                               const VirtualCoupling& coupling,
                                               const VirtualCoupling::Stretch& stretch,
                                               double scale = 1) const noexcept;
+  /// Finds the motion that obeys bounds, of any length; 0 if no motion obeys them. Without bounds
+  /// the same with none.
+  /// @param tolerance a bound may be violated by so much, m
+  [[nodiscard]] std::optional<Vector6> motion(const EffectInput& input, TimedEffects& effects,
+                                              const VirtualCoupling& coupling,
+                                              const VirtualCoupling::Stretch& stretch,
+                                              NearestMotion* bounds,
+                                              double tolerance) const noexcept;
 
   /// A bound on the displacement of the tool's surface, m.
   [[nodiscard]] double way(const Vector6& motion) const noexcept;
 
   [[nodiscard]] double max_step() const noexcept { return max_step_; }
+  [[nodiscard]] double radius() const noexcept { return radius_; }
   /// Says how far the held surface reaches from now on.
   void set_radius(double radius) noexcept { radius_ = radius; }
 

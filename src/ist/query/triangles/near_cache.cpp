@@ -7,6 +7,7 @@
 
 #include "ist/base/ordered_vector.h"
 #include "ist/base/pose.h"
+#include "ist/mesh/bounding_box.h"
 
 namespace ist {
 namespace {
@@ -31,14 +32,6 @@ constexpr std::uint64_t kPause = 64;
 // The tests that take as long as a pair of the list.
 constexpr std::uint64_t kPairTests = 48;
 
-Eigen::AlignedBox3d box_of(const TriangleMesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t v : triangle) box.extend(mesh.vertices[v]);
-  }
-  return box;
-}
-
 }  // namespace
 
 NearCache::NearCache(const TriangleMesh& fixed, const TriangleMesh& moving,
@@ -48,7 +41,7 @@ NearCache::NearCache(const TriangleMesh& fixed, const TriangleMesh& moving,
     : fixed_(fixed),
       moving_(moving),
       kernels_(kernels),
-      box_(box_of(moving)),
+      box_(bounding_box(moving)),
       walk_(fixed_clusters, moving_clusters, kernels) {
   for (List& list : lists_) list.blocks.resize(pairs / TriangleOctet::kSize + kClasses);
 }
@@ -57,16 +50,6 @@ std::size_t NearCache::bytes_for(const TriangleClusters& fixed, const TriangleCl
                                  std::size_t pairs) noexcept {
   return 2 * (pairs / TriangleOctet::kSize + kClasses) * sizeof(Block) +
          ClusterWalk::bytes_for(fixed, moving);
-}
-
-// The way of a point is a convex function of it, so a corner of the box has the longest.
-double NearCache::way(const RelativePose& from, const RelativePose& to) const noexcept {
-  double most = 0;
-  for (int k = 0; k < 8; ++k) {
-    const Eigen::Vector3d corner = box_.corner(static_cast<Eigen::AlignedBox3d::CornerType>(k));
-    most = std::max(most, square_in_order(difference(moved(from, corner), moved(to, corner))));
-  }
-  return std::sqrt(most);
 }
 
 bool NearCache::holds(const List& list, const RelativePose& pose, const Need& need,

@@ -83,8 +83,9 @@ class NearCache {
 
   [[nodiscard]] List& kept() noexcept { return lists_[kept_]; }
   [[nodiscard]] List& next() noexcept { return lists_[1 - kept_]; }
-  // Returns how far a point of the moving body is at one pose from where it is at another, at most.
-  [[nodiscard]] double way(const RelativePose& from, const RelativePose& to) const noexcept;
+  [[nodiscard]] double way(const RelativePose& from, const RelativePose& to) const noexcept {
+    return longest_way(box_, from, to);
+  }
   // Returns whether a list has all pairs that are near at a pose; `spare` is left of its slack
   // then.
   [[nodiscard]] bool holds(const List& list, const RelativePose& pose, const Need& need,

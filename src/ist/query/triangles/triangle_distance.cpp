@@ -70,22 +70,6 @@ NearPair points_of(const ClosestSide& a, const ClosestSide& b, TrianglePair tria
   return near_pair(triangles, tried.square, edge_point(a, i, tried.first), corner_point(b, j));
 }
 
-// Whether a plane across the way between two points certainly parts two triangles. The points need
-// not be the closest: the gap is measured along any vector. Coordinates are taken from one of the
-// points, so that they are as small as the triangles.
-bool surely_apart(const TriangleCorners& a, const TriangleCorners& b, const NearPair& pair) {
-  constexpr double kRounding = 0x1p-48;
-  const Vector way = pair.moving_point - pair.fixed_point;
-  double first = -HUGE_VAL, second = HUGE_VAL, size = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vector p = a[k] - pair.fixed_point, q = b[k] - pair.fixed_point;
-    first = std::max(first, dot_in_order(p, way));
-    second = std::min(second, dot_in_order(q, way));
-    size = std::max({size, p.cwiseAbs().maxCoeff(), q.cwiseAbs().maxCoeff()});
-  }
-  return second - first > kRounding * size * way.cwiseAbs().maxCoeff();
-}
-
 // A point in which an edge meets a plane, and how deep it lies in the triangle of that plane, as a
 // part of its size.
 struct Crossing {
@@ -158,7 +142,8 @@ NearPair closest_points(const TriangleCorners& a, const TriangleCorners& b, Tria
   const ClosestSide of_a(first), of_b(second);
   NearPair pair = points_of(of_a, of_b, triangles, parts);
   pair.distance = std::max(pair.distance, kLeastDistance);
-  if (surely_apart(a, b, pair) || !triangles_meet(a, b)) return pair;
+  const Vector way = pair.moving_point - pair.fixed_point;
+  if (surely_parted(a, b, pair.fixed_point, way) || !triangles_meet(a, b)) return pair;
   return common_point(of_a, of_b, triangles);
 }
 
@@ -206,6 +191,19 @@ std::size_t near_parts(const TriangleCorners& a, const TriangleCorners& b, Trian
     }
   }
   return count;
+}
+
+bool surely_parted(const TriangleCorners& a, const TriangleCorners& b, const Vector& near,
+                   const Vector& way) noexcept {
+  constexpr double kRounding = 0x1p-48;
+  double first = -HUGE_VAL, second = HUGE_VAL, size = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector p = a[k] - near, q = b[k] - near;
+    first = std::max(first, dot_in_order(p, way));
+    second = std::min(second, dot_in_order(q, way));
+    size = std::max({size, p.cwiseAbs().maxCoeff(), q.cwiseAbs().maxCoeff()});
+  }
+  return second - first > kRounding * size * way.cwiseAbs().maxCoeff();
 }
 
 PlainMove plain_move(const Eigen::Isometry3d& pose) noexcept {

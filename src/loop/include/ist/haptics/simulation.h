@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -44,6 +45,8 @@ struct TickBudget {
   Budget contacts = {},  ///< of the contacts
       proximity = {},    ///< of the proximity points
       change = {};       ///< of the contacts of the bodies as a change leaves them
+  /// The most steps of the tool; by default those of the scene. No effect with `springs`.
+  int steps = std::numeric_limits<int>::max();
 };
 
 /// Whether a body was attached or released, or why not.
@@ -66,13 +69,29 @@ struct HandChange {
   ChangeStatus status;  ///< other than kDone: nothing changed
 };
 
+/// A contact of the tool with a fixed body. SI, scene axes.
+struct ContactPoint {
+  Eigen::Vector3d position;  ///< on the fixed body, m
+  Eigen::Vector3d normal;    ///< of unit length, from the fixed body to the held one
+  Eigen::Vector3d force;     ///< on the tool, N
+  double gap;                ///< between the bodies there, m
+  TrianglePair triangles;    ///< by their indices in the meshes; `moving` is the held body's
+  std::size_t fixed, held;   ///< the bodies, by their numbers
+};
+
 /// The result of a tick.
 struct Tick {
   Placement device = {};             ///< as read; the last known pose if it could not be read
   Placement tool = {};               ///< after the tick
   Vector6 wrench = Vector6::Zero();  ///< on the hand, about the tool's origin
   bool fault = false;  ///< no device pose, or numbers that are not finite: the wrench is zero
-  bool held = false;   ///< the contacts were incomplete: the tool is at its last complete pose
+  /// The budget ended the tick, or no motion was free: the tool is at its last free pose. With
+  /// `springs`: the contacts were incomplete, and the tool is at its last complete pose.
+  bool held = false;
+  bool halved = false;  ///< the end of a step was not free, and the step was shortened
+  int steps = 0;        ///< that the tool made; 0 with `springs`
+  /// The contacts that push the tool, at most six; empty with `springs`. Valid until the next tick.
+  std::span<const ContactPoint> points = {};
   /// The results of the queries at the tool's pose before the tick, over all pairs of a fixed and a
   /// held body: counts are sums, the distance is the least, and all pairs must be complete. Mesh
   /// units. Empty if no effect needs the query.

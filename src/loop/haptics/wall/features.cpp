@@ -1,0 +1,143 @@
+#include "loop/haptics/wall/features.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "ist/base/ordered_vector.h"
+#include "ist/base/rigid_move.h"
+#include "ist/mesh/bounding_box.h"
+#include "ist/query/query.h"
+#include "ist/query/triangles/triangle_distance.h"
+#include "ist/query/triangles/triangle_visitors.h"
+
+namespace ist {
+namespace {
+
+// Cells along the diagonal of the moving body, if a list is thinned.
+constexpr double kCells = 64;
+
+std::uint64_t mixed(std::uint64_t x) noexcept {
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EB;
+  return x ^ (x >> 31);
+}
+
+std::uint64_t number_of(const SurfacePart& part) noexcept {
+  return std::uint64_t{static_cast<std::uint8_t>(part.kind)} << 32 | part.index;
+}
+
+}  // namespace
+
+FeatureList::KeySet::KeySet(std::size_t room) : slots_(std::bit_ceil(4 * room + 4)) {}
+
+bool FeatureList::KeySet::add(const Key& key) noexcept {
+  const std::size_t mask = slots_.size() - 1;
+  for (std::size_t at = mixed(key.first ^ mixed(key.second)) & mask;; at = (at + 1) & mask) {
+    Slot& slot = slots_[at];
+    if (slot.stamp != stamp_) {
+      slot = {key, stamp_};
+      ++count_;
+      return true;
+    }
+    if (slot.key == key) return false;
+  }
+}
+
+void FeatureList::KeySet::clear() noexcept {
+  count_ = 0;
+  if (++stamp_ != 0) return;
+  for (Slot& slot : slots_) slot.stamp = 0;
+  stamp_ = 1;
+}
+
+std::size_t FeatureList::KeySet::bytes() const noexcept { return slots_.capacity() * sizeof(Slot); }
+
+FeatureList::FeatureList(const Surface& fixed, const Surface& moving, std::size_t room)
+    : fixed_(fixed),
+      moving_(moving),
+      cell_(bounding_box(moving.mesh()).diagonal().norm() / kCells),
+      seen_(4 * room),
+      cells_(room) {
+  features_.reserve(room);
+}
+
+void FeatureList::clear() noexcept {
+  features_.clear();
+  seen_.clear();
+  cells_.clear();
+  thinned_ = false;
+}
+
+void FeatureList::find(std::span<const NearPair> near, const Eigen::Isometry3d& pose, double margin,
+                       Which which) noexcept {
+  clear();
+  const bool minima = which == Which::kMinima;
+  if (list(near, pose, margin, minima, 0)) return;
+  clear();
+  thinned_ = true;
+  list(near, pose, margin, minima, cell_);
+}
+
+bool FeatureList::list(std::span<const NearPair> near, const Eigen::Isometry3d& pose, double margin,
+                       bool minima, double cell) noexcept {
+  const RigidMove move(pose);
+  for (const NearPair& pair : near) {
+    const auto [fixed, moving] = pair.triangles;
+    if (minima) {
+      // The closest points of two triangles are a minimum of the surfaces, or no part of these
+      // triangles has one.
+      const Eigen::Vector3d normal = pair.direction();
+      const Eigen::Vector3d back = -(pose.linear().transpose() * normal);
+      if (!fixed_.leaves(fixed_.part(fixed, pair.fixed_part), normal, kTolerance) ||
+          !moving_.leaves(moving_.part(moving, pair.moving_part), back, kTolerance)) {
+        continue;
+      }
+    }
+    TriangleCorners second = corners_of(moving_.mesh(), moving);
+    for (Eigen::Vector3d& corner : second) corner = move(corner);
+    std::array<NearPair, Query::kMostNearParts> parts;
+    const std::size_t count =
+        near_parts(corners_of(fixed_.mesh(), fixed), second, pair.triangles, margin, parts);
+    for (const NearPair& part : std::span(parts).first(count)) {
+      const SurfacePart of_fixed = fixed_.part(fixed, part.fixed_part);
+      const SurfacePart of_moving = moving_.part(moving, part.moving_part);
+      if (!add(part, of_fixed, of_moving, pose, minima, cell)) return false;
+    }
+  }
+  return true;
+}
+
+bool FeatureList::add(const NearPair& near, const SurfacePart& fixed, const SurfacePart& moving,
+                      const Eigen::Isometry3d& pose, bool minima, double cell) noexcept {
+  if (minima && (fixed_.is_flat(fixed) || moving_.is_flat(moving))) return true;
+  if (seen_.is_full()) return false;
+  if (!seen_.add({number_of(fixed), number_of(moving)})) return true;
+  const Eigen::Vector3d normal = near.direction();
+  if (!(square_in_order(normal) > 0)) return true;
+  if (minima) {
+    const Eigen::Vector3d back = -(pose.linear().transpose() * normal);
+    if (!fixed_.leaves(fixed, normal, kTolerance) || !moving_.leaves(moving, back, kTolerance)) {
+      return true;
+    }
+  }
+  if (cell > 0) {
+    std::uint64_t octant = 0, at[3];
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      at[i] = static_cast<std::uint64_t>(
+          static_cast<std::int64_t>(std::floor(near.moving_point[i] / cell)));
+      octant = 2 * octant + (normal[i] > 0 ? 1 : 0);
+    }
+    if (!cells_.add({at[0] << 32 ^ (at[1] & 0xFFFFFFFF), at[2] << 3 | octant})) return true;
+  }
+  if (features_.size() == features_.capacity()) return false;
+  features_.push_back(
+      {fixed, moving, near.triangles, near.fixed_point, near.moving_point, normal, near.distance});
+  return true;
+}
+
+std::size_t FeatureList::bytes() const noexcept {
+  return features_.capacity() * sizeof(Feature) + seen_.bytes() + cells_.bytes();
+}
+
+}  // namespace ist

@@ -1,0 +1,199 @@
+#include "loop/haptics/wall/walk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace ist {
+namespace {
+
+constexpr int kHalvings = 6;
+// A motion shorter than this part of the trust is not made: a tool at rest keeps its bits.
+constexpr double kStill = 1e-6;
+// The part of the trust that a fixed body may use by its own motion.
+constexpr double kDriftPart = 0.5;
+// The part of a way that a step may go, for rounding.
+constexpr double kWithin = 0.999;
+
+}  // namespace
+
+class Walk::Step {
+ public:
+  // `left` is what is left of the scripts' time in this tick, s.
+  Step(const Parts& parts, Placement& tool, double& time, double left) noexcept
+      : parts_(parts), tool_(tool), time_(time), part_(left) {
+    look_ahead();
+  }
+
+  // The most that a fixed body moves against the tool in this step, m.
+  [[nodiscard]] double drift() const noexcept { return drift_; }
+
+  // Shortens the step so that no fixed body moves farther than its part of the trust.
+  void limit_drift() noexcept {
+    const double most = kDriftPart * parts_.wall.trust();
+    for (int i = 0; i < 64 && drift_ > most; ++i) {
+      part_ *= std::min(0.5, kWithin * most / drift_);
+      look_ahead();
+    }
+    if (drift_ > most) {
+      part_ = 0;
+      look_ahead();
+    }
+  }
+
+  // Makes a motion without a proof.
+  void go(const Vector6& motion) noexcept {
+    tool_ = tool_.moved(motion);
+    time_ += part_;
+  }
+
+  // Makes a part of a motion if its end is free. Returns whether it is.
+  bool try_part(double fraction, const Vector6& motion, const Budget& budget) noexcept {
+    const Vector6 moved = push_ + fraction * (motion - push_);
+    const double way = parts_.tool.way(moved);
+    if (part_ == 0 && way <= kStill * parts_.wall.settings().trust) return true;
+    const Placement there = tool_.moved(moved);
+    place(time_ + part_, 0);
+    const bool is_free = parts_.wall.is_free(parts_.bodies, there, way + drift_, budget);
+    if (is_free) {
+      tool_ = there;
+      time_ += part_;
+    } else {
+      look_ahead();
+    }
+    return is_free;
+  }
+
+  // Returns the part of a motion that is as long as the trust. Fixed bodies that move push the tool
+  // by the least motion that obeys the bounds, and the rest of the motion is cut.
+  double fraction_of(const Vector6& motion) noexcept {
+    const double way = parts_.tool.way(motion), most = parts_.wall.trust() - drift_;
+    push_.setZero();
+    if (way <= most) return 1;
+    if (drift_ > 0) {
+      const double radius = std::max(parts_.tool.radius(), most);
+      Matrix6 metric = Matrix6::Identity();
+      metric.bottomRightCorner<3, 3>() *= radius * radius;
+      NearestMotion& bounds = parts_.wall.bounds();
+      if (bounds.solve(metric, Vector6::Zero(), parts_.wall.tolerance())) push_ = bounds.motion();
+    }
+    return kWithin * most / way;
+  }
+
+  [[nodiscard]] double part() const noexcept { return part_; }
+
+ private:
+  void place(double time, double step) noexcept {
+    if (parts_.bodies.has_scripts()) parts_.bodies.set_time(time, step);
+  }
+  void look_ahead() noexcept {
+    place(time_, part_);
+    drift_ = 0;
+    if (!parts_.bodies.has_scripts()) return;
+    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
+      if (parts_.bodies.is_held(i)) continue;
+      drift_ = std::max(drift_, parts_.tool.way(parts_.bodies.drift(i, tool_)));
+    }
+  }
+
+  const Parts& parts_;
+  Placement& tool_;
+  double& time_;
+  double part_, drift_ = 0;
+  Vector6 push_ = Vector6::Zero();
+};
+
+Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
+                    ToolContacts& contacts) noexcept {
+  const auto& [bodies, wall, body, effects, coupling, dt] = parts_;
+  const Placement start = tool;
+  Budget rest = goal.budget;
+  End end;
+  double left = bodies.has_scripts() ? dt : 0;
+  wall.drop_contacts();
+  // A tick that is replayed makes the same steps, and knows no more.
+  const auto hold = [&] {
+    end.held = true;
+    near_ = false;
+    wall.forget();
+  };
+  const int most = std::min(goal.steps, wall.settings().steps);
+  while (end.steps < most) {
+    Step step(parts_, tool, time, left);
+    const VirtualCoupling::Stretch stretch{motion_between(tool, goal.device),
+                                           goal.device_motion - motion_between(start, tool), dt};
+    const Placement here = tool;
+    const EffectInput input{here, contacts, goal.proximity, dt};
+    const auto motion = [&](NearestMotion* bounds) {
+      return body.motion(input, effects, coupling, stretch, bounds, wall.tolerance());
+    };
+
+    double wanted = 0;
+    if (!near_) {
+      contacts.clear();
+      const std::optional<Vector6> freely = motion(nullptr);
+      if (!freely) {
+        end.finite = false;
+        return end;
+      }
+      wanted = body.way(*freely) + step.drift();
+      if (wall.is_clear(bodies, tool, wanted)) {
+        step.go(*freely);
+        effects.advance(input, *freely);
+        ++end.steps;
+        return end;
+      }
+    }
+    const std::uint64_t before = end.search.sphere_tests;
+    if (!wall.find(bodies, tool, wanted, rest, end.search, contacts)) {
+      hold();
+      return end;
+    }
+    if (rest.has_tests()) {
+      rest.tests -= std::min(rest.tests, end.search.sphere_tests - before);
+    }
+    near_ = wall.is_near();
+    step.limit_drift();
+
+    using Which = FeatureList::Which;
+    bool is_free = false, is_whole = false;
+    for (const Which which : {Which::kMinima, Which::kAll}) {
+      NearestMotion& bounds = wall.bound(bodies, tool, {which});
+      std::optional<Vector6> bounded = motion(&bounds);
+      if (bounded && !bounds.is_feasible()) {
+        bounded = motion(&wall.bound(bodies, tool, {which, /*asks_for_skin=*/false}));
+      }
+      if (!bounded) {
+        end.finite = false;
+        return end;
+      }
+      wall.note_contacts(bodies);
+      double fraction = step.fraction_of(*bounded);
+      is_whole = fraction == 1;
+      is_free = step.try_part(fraction, *bounded, rest);
+      if (is_free) {
+        effects.advance(input, *bounded);
+        break;
+      }
+      is_whole = false;
+      if (which == Which::kMinima) continue;
+      end.halved = true;
+      for (int i = 0; i < kHalvings && !is_free; ++i) {
+        fraction *= 0.5;
+        is_free = step.try_part(fraction, *bounded, rest);
+      }
+    }
+    if (!is_free) {
+      hold();
+      return end;
+    }
+    wall.keep_contacts();
+    ++end.steps;
+    left -= step.part();
+    if (is_whole && left <= 0) return end;
+  }
+  if (most < wall.settings().steps) hold();
+  return end;
+}
+
+}  // namespace ist
