@@ -193,6 +193,20 @@ TEST_F(CWorld, GivesTheContactsOfCpp) {
   EXPECT_EQ(count, 0u);
 }
 
+TEST_F(CWorld, TellsThatABudgetEndedTheContactsOfAPair) {
+  ASSERT_EQ(name(ist_world_reserve(world_, IST_ALL_PAIRS)), "ok");
+  std::uint64_t count = 0;
+  auto whole = sized<ist_contact_sums>(), part = whole;
+  ASSERT_EQ(name(ask(IST_ASK_CONTACTS)), "ok");
+  ASSERT_EQ(name(ist_world_get_contacts(world_, 0, 1, nullptr, 0, &whole, &count)), "ok");
+  EXPECT_EQ(pairs_[0].complete, 1);
+  const auto half = sized<ist_budget>({0, pairs_[0].sphere_tests / 2, 0});
+  ASSERT_EQ(name(ask(IST_ASK_CONTACTS, &half)), "ok");
+  ASSERT_EQ(name(ist_world_get_contacts(world_, 0, 1, nullptr, 0, &part, &count)), "ok");
+  EXPECT_EQ(pairs_[0].complete, 0);
+  EXPECT_LT(part.pairs, whole.pairs);
+}
+
 TEST_F(CWorld, MovesBodiesAndTellsTheirPoses) {
   ASSERT_EQ(name(ist_world_reserve(world_, IST_ALL_PAIRS)), "ok");
   EXPECT_EQ(name(ist_world_set_pose(world_, 1, c_shift(0, 30, 0).data())), "ok");
