@@ -58,13 +58,7 @@ ist_distance_result result_of(const DistanceResult& found) {
   result.complete = found.complete;
   result.narrowest = found.narrowest;
   result.rotation_error = found.rotation_error;
-  if (!found.nearest) return result;
-  result.nearest_known = 1;
-  copy(found.nearest->fixed_point, result.nearest_fixed);
-  copy(found.nearest->moving_point, result.nearest_moving);
-  copy(found.nearest->direction(), result.direction);
-  result.nearest_triangles[0] = found.nearest->triangles.fixed;
-  result.nearest_triangles[1] = found.nearest->triangles.moving;
+  result.nearest_known = copy_nearest(found.nearest, result);
   return result;
 }
 

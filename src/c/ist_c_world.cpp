@@ -50,7 +50,7 @@ WorldOptions read_world_options(Call& call, const ist_world_options* given) {
   return options;
 }
 
-// Returns the status of a pair. It is no error of the call.
+// Returns the status of a pair. The call itself succeeds.
 ist_status status_of_pair(QueryStatus status) {
   switch (status) {
     case QueryStatus::kDone:
@@ -84,6 +84,24 @@ ist_world_pair pair_of(const WorldPair& pair) {
   out.narrowest = pair.narrowest;
   out.sphere_tests = pair.sphere_tests;
   out.rotation_error = pair.rotation_error;
+  out.nearest_known = copy_nearest(pair.nearest, out);
+  return out;
+}
+
+ist_least_distance least_of(const WorldDistance& found) {
+  ist_least_distance out{};
+  out.lower = found.distance.lower;
+  out.upper = found.distance.upper;
+  out.sphere_tests = found.sphere_tests;
+  out.complete = found.complete;
+  out.pose_missing = found.status == QueryStatus::kInvalidPose;
+  if (!found.nearest) return out;
+  out.nearest_known = 1;
+  out.a = found.nearest->a;
+  out.b = found.nearest->b;
+  for (const WorldPair& pair : found.pairs) {
+    if (pair.bodies == *found.nearest) out.points_known = copy_nearest(pair.nearest, out);
+  }
   return out;
 }
 
@@ -278,11 +296,8 @@ ist_status ist_world_distance(ist_world* world, double tolerance, const ist_budg
     const Held<WorldObject> held(call, "world", world);
     if (!held) return;
     const ist::WorldDistance found = held->world.distance(tolerance, allowed);
-    const bool lost = found.status == ist::QueryStatus::kInvalidPose;
-    if (!lost && !world_answered(call, found.status)) return;
-    const ist::BodyPair nearest = found.nearest.value_or(ist::BodyPair{});
-    write_sized({0, found.distance.lower, found.distance.upper, found.sphere_tests, found.complete,
-                 lost, found.nearest.has_value(), nearest.a, nearest.b, 0},
-                *result);
+    const ist_least_distance values = least_of(found);
+    if (values.pose_missing == 0 && !world_answered(call, found.status)) return;
+    write_sized(values, *result);
   });
 }

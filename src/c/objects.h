@@ -12,8 +12,8 @@
 #include "ist/query/query.h"
 #include "ist/tree/sphere_tree.h"
 
-/// The objects of handles, except Servo (ist_c_servo.cpp) and WorldObject (world/), and what the
-/// functions on them share.
+/// The objects of handles, except Servo (ist_c_servo.cpp) and WorldObject (ist_c_world.cpp), and
+/// the helpers that the functions on them share.
 namespace ist::capi {
 
 struct Mesh : OfHandle<ist_mesh, HandleKind::kMesh, HandleUse::kShared> {
@@ -28,7 +28,7 @@ struct Tree : OfHandle<ist_tree, HandleKind::kTree, HandleUse::kShared> {
 };
 
 struct QueryObject : OfHandle<ist_query, HandleKind::kQuery, HandleUse::kAlone> {
-  /// @param manifold_options empty: the query gives no contacts, as without voxels
+  /// @param manifold_options empty: the query does not give contacts
   QueryObject(const SphereTree& fixed, const SphereTree& moving, const QueryOptions& options,
               const std::optional<ManifoldOptions>& manifold_options)
       : query(fixed, moving, options), query_options(options) {
@@ -84,7 +84,20 @@ static_assert(spheres_of(SpherePolicy::kSimple) == IST_SPHERES_SIMPLE &&
 
 void copy(const Eigen::Vector3d& from, double (&to)[3]) noexcept;
 
-/// Converts a caller's budget; NULL leaves the default, which has no limit.
+/// Copies the nearest triangles to a result that has members for them. Returns whether there are
+/// any.
+template <typename Result>
+[[nodiscard]] bool copy_nearest(const std::optional<NearPair>& nearest, Result& result) noexcept {
+  if (!nearest) return false;
+  copy(nearest->fixed_point, result.nearest_fixed);
+  copy(nearest->moving_point, result.nearest_moving);
+  copy(nearest->direction(), result.direction);
+  result.nearest_triangles[0] = nearest->triangles.fixed;
+  result.nearest_triangles[1] = nearest->triangles.moving;
+  return true;
+}
+
+/// Converts a caller's budget. NULL leaves the default: no limit.
 [[nodiscard]] Budget read_budget(Call& call, const ist_budget* given);
 
 /// The options of a query, and of its contacts.

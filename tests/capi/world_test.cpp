@@ -84,6 +84,24 @@ void expect_same(const ist_world_pair& pair, const WorldPair& expected) {
   EXPECT_EQ(pair.b, expected.bodies.b);
 }
 
+template <class Result>
+void expect_same_points(const Result& result, const NearPair& expected) {
+  const Eigen::Vector3d direction = expected.direction();
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(result.nearest_fixed[i], expected.fixed_point[i]);
+    EXPECT_EQ(result.nearest_moving[i], expected.moving_point[i]);
+    EXPECT_EQ(result.direction[i], direction[i]);
+  }
+  EXPECT_EQ(result.nearest_triangles[0], expected.triangles.fixed);
+  EXPECT_EQ(result.nearest_triangles[1], expected.triangles.moving);
+}
+
+template <class Result>
+double length_of(const Result& result) {
+  using Point = Eigen::Map<const Eigen::Vector3d>;
+  return (Point(result.nearest_moving) - Point(result.nearest_fixed)).norm();
+}
+
 TEST_F(CWorld, GivesTheAnswersOfCpp) {
   std::array<double, 16> rough = poses_[0];
   rough[0] += 1e-4;
@@ -170,6 +188,52 @@ TEST_F(CWorld, GivesTheAnswersOfCpp) {
   EXPECT_EQ(name(ist_world_forget(world_)), "ok");
 }
 
+TEST_F(CWorld, GivesTheNearestPointsOfCpp) {
+  ASSERT_EQ(name(ist_world_reserve(world_, IST_ALL_PAIRS)), "ok");
+  cpp_->reserve();
+  ASSERT_EQ(name(ask(IST_ASK_INTERSECTS)), "ok");
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(pairs_[k].nearest_known, 0);
+  int meeting = 0, apart = 0;
+  for (const double x : {0.0, -1.0, -5.0}) {  // the ball goes away from the others
+    ASSERT_EQ(name(ist_world_set_pose(world_, 0, c_shift(x, 0, 0).data())), "ok");
+    ASSERT_EQ(cpp_->set_pose(0, isometry(c_shift(x, 0, 0))), QueryStatus::kDone);
+    ASSERT_EQ(name(ist_world_forget(world_)), "ok");
+    cpp_->forget();
+    const auto expected = cpp_->ask({WorldQuestion::kDistance, 0.01});
+    question_.tolerance = 0.01;
+    ASSERT_EQ(name(ask(IST_ASK_DISTANCE)), "ok");
+    ASSERT_EQ(result_.written, expected.pairs.size());
+    for (std::size_t k = 0; k < result_.written; ++k) {
+      const ist_world_pair& pair = pairs_[k];
+      ASSERT_EQ(pair.nearest_known, 1);
+      expect_same_points(pair, *expected.pairs[k].nearest);
+      EXPECT_GE(length_of(pair), pair.distance_lower - 1e-12);
+      EXPECT_LE(length_of(pair), pair.distance_upper + 1e-12);
+      const bool intersect = pair.distance_upper == 0;
+      (intersect ? meeting : apart) += 1;
+      EXPECT_EQ(length_of(pair) == 0, intersect);
+      EXPECT_NEAR(Eigen::Map<const Eigen::Vector3d>(pair.direction).norm(), intersect ? 0 : 1,
+                  1e-12);
+    }
+    auto least = sized<ist_least_distance>();
+    ASSERT_EQ(name(ist_world_distance(world_, 0.01, nullptr, &least)), "ok");
+    ASSERT_EQ(least.points_known, 1);
+    EXPECT_GE(length_of(least), least.lower - 1e-12);
+    EXPECT_LE(length_of(least), least.upper + 1e-12);
+    for (const WorldPair& pair : cpp_->distance(0.01).pairs) {
+      if (pair.bodies == BodyPair{least.a, least.b}) expect_same_points(least, *pair.nearest);
+    }
+  }
+  EXPECT_TRUE(meeting > 1 && apart > 1) << meeting << " and " << apart;
+  // Roots alone measure no points.
+  ASSERT_EQ(name(ist_world_set_pose(world_, 1, c_shift(0, 90, 0).data())), "ok");
+  auto least = sized<ist_least_distance>();
+  ASSERT_EQ(name(ist_world_distance(world_, 1000, nullptr, &least)), "ok");
+  EXPECT_EQ(least.nearest_known, 1);
+  EXPECT_EQ(least.points_known, 0);
+  EXPECT_EQ(least.direction[0], 0);
+}
+
 TEST_F(CWorld, GivesTheContactsOfCpp) {
   ASSERT_EQ(name(ist_world_reserve(world_, IST_ALL_PAIRS)), "ok");
   cpp_->reserve();
@@ -191,6 +255,20 @@ TEST_F(CWorld, GivesTheContactsOfCpp) {
   EXPECT_EQ(name(ist_world_get_contacts(world_, 0, 3, nullptr, 0, nullptr, &count)),
             "not-prepared");  // it is apart
   EXPECT_EQ(count, 0u);
+}
+
+TEST_F(CWorld, TellsThatABudgetEndedTheContactsOfAPair) {
+  ASSERT_EQ(name(ist_world_reserve(world_, IST_ALL_PAIRS)), "ok");
+  std::uint64_t count = 0;
+  auto whole = sized<ist_contact_sums>(), part = whole;
+  ASSERT_EQ(name(ask(IST_ASK_CONTACTS)), "ok");
+  ASSERT_EQ(name(ist_world_get_contacts(world_, 0, 1, nullptr, 0, &whole, &count)), "ok");
+  EXPECT_EQ(pairs_[0].complete, 1);
+  const auto half = sized<ist_budget>({0, pairs_[0].sphere_tests / 2, 0});
+  ASSERT_EQ(name(ask(IST_ASK_CONTACTS, &half)), "ok");
+  ASSERT_EQ(name(ist_world_get_contacts(world_, 0, 1, nullptr, 0, &part, &count)), "ok");
+  EXPECT_EQ(pairs_[0].complete, 0);
+  EXPECT_LT(part.pairs, whole.pairs);
 }
 
 TEST_F(CWorld, MovesBodiesAndTellsTheirPoses) {

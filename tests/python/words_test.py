@@ -42,6 +42,7 @@ found = world.leaf_pairs(out=np.empty(4, ist.WORLD_PAIR))
 of_first = found.found_of(found.pairs[0])
 touching: bool = world.ask("intersects", tests=100).complete
 least: Optional[float] = world.distance(0.1).upper
+met: Optional[Tuple[int, int]] = world.distance(0.1).triangles
 sweep = ist.Sweep("job.toml", pathlib.Path("out"), progress=lambda part: None)
 outcomes = [sweep.run(part, threads=2).outcome for part in sweep.parts]
 lacking: List[int] = sweep.merge().missing + sweep.status(verify=True).given_up

@@ -85,6 +85,51 @@ class Worlds(Refusals):
         self.assertLessEqual(least.upper - least.lower, 0.001)
         self.assertFalse(self.world.distance(0.0, tests=1).complete)
 
+    # Turns body 0, so that its coordinates are not those of the world.
+    def turn(self):
+        self.poses[0] = pose_of([1, 0.5, 0.1], 0.7, [0, 0.2, 0])
+        self.world.set_pose(0, self.poses[0])
+
+    # Compares nearest points in the world with the points of a query of bodies `a` and `b`, in coordinates of `a`.
+    def same_points(self, a, b, tolerance, found, triangles):
+        wanted = self.query({"a": a, "b": b}).distance(self.world.pose_of(a, b), tolerance)
+        pose = self.poses[a]
+        for name in ("nearest_fixed", "nearest_moving"):
+            np.testing.assert_allclose(found[name], pose[:3, :3] @ getattr(wanted, name) + pose[:3, 3], rtol=0, atol=1e-12)
+        np.testing.assert_allclose(found["direction"], pose[:3, :3] @ wanted.direction, rtol=0, atol=1e-12)
+        self.assertEqual(tuple(triangles), wanted.triangles)
+
+    def test_distances_have_the_nearest_points(self):
+        self.world.reserve()
+        self.turn()
+        self.assertFalse(self.world.intersects().pairs["nearest_known"].any())
+        self.world.forget()
+        rows = self.world.distances(0.01).pairs
+        for row in rows:
+            self.assertEqual(row["nearest_known"], 1)
+            self.same_points(row["a"], row["b"], 0.01, row, row["nearest_triangles"])
+            way = row["nearest_moving"] - row["nearest_fixed"]
+            length = np.linalg.norm(way)
+            self.assertTrue(row["distance_lower"] - 1e-12 <= length <= row["distance_upper"] + 1e-12)
+            np.testing.assert_allclose(row["direction"] * length, way, rtol=0, atol=1e-12)
+        self.assertGreater(rows["distance_lower"][1], 0.1)
+        for row in rows[[0, 2]]:  # they intersect
+            self.assertEqual(row["distance_upper"], 0)
+            self.assertEqual(row["nearest_fixed"].tolist(), row["nearest_moving"].tolist())
+            self.assertEqual(row["direction"].tolist(), [0, 0, 0])
+
+    def test_the_least_distance_has_the_nearest_points(self):
+        self.world.reserve()
+        self.turn()
+        self.world.set_pose(1, shift(0, 30, 0))
+        least = self.world.distance(0.001)
+        self.assertEqual(least.nearest, (0, 2))
+        self.same_points(0, 2, 0.001, least._asdict(), least.triangles)
+        length = np.linalg.norm(least.nearest_moving - least.nearest_fixed)
+        self.assertTrue(least.lower - 1e-12 <= length <= least.upper + 1e-12)
+        unasked = self.world.distance(1000)  # the roots are enough
+        self.assertEqual((unasked.nearest_fixed, unasked.nearest_moving, unasked.direction, unasked.triangles), (None,) * 4)
+
     def test_a_pose_that_is_none(self):
         self.world.reserve()
         with self.assertRaises(ist.InputError) as raised:

@@ -16,9 +16,9 @@ class LeafPairs(NamedTuple):
     count: int  # all pairs found, in the array or not
     complete: bool  # False: a limit ended the search
     truncated: bool  # True: the array was too short and holds the first pairs
-    level: int  # levels above the leaves at which the search ended
+    level: int  # the search ended so many levels above the leaves
     distance: Optional[Tuple[float, float]]  # the surfaces' distance lies between, if it is known
-    resolution: float  # the surfaces in a pair are no farther apart
+    resolution: float  # greatest distance between the surfaces in a pair
     sphere_tests: int
     rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|
 
@@ -28,7 +28,7 @@ class Contacts(NamedTuple):
 
     contacts: np.ndarray  # CONTACT, fixed mesh coordinates
     count: int
-    complete: bool  # False: a limit ended the search; there is no force
+    complete: bool  # False: a limit ended the search; do not use the sums as a force
     leaf_pairs: int
     area: float  # sum of the weights of all leaf pairs, mesh units²
     sphere_tests: int
@@ -52,7 +52,7 @@ class Distance(NamedTuple):
 
     lower: float
     upper: float
-    complete: bool  # the interval is no wider than the tolerance
+    complete: bool  # the interval is at most as wide as the tolerance
     narrowest: float  # no tolerance below this width can be reached here
     sphere_tests: int
     rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|
@@ -110,7 +110,11 @@ class NearPairs(NamedTuple):
 
 
 class WorldAnswer(NamedTuple):
-    """One row for each pair of bodies of a world that is near, sorted; all other pairs are apart."""
+    """One row for each pair of bodies of a world that is near, sorted; all other pairs are apart.
+
+    After distances() a row with `nearest_known` 1 has `nearest_fixed`, `nearest_moving` and `direction` in world coordinates, and
+    `nearest_triangles`.
+    """
 
     pairs: np.ndarray  # WORLD_PAIR
     count: int  # all pairs that are near, in the array or not
@@ -129,10 +133,14 @@ class LeastDistance(NamedTuple):
 
     lower: float
     upper: float
-    complete: bool  # the interval is no wider than the tolerance, and counts all pairs
-    nearest: Optional[Tuple[int, int]]  # the bodies with the least upper end; None where no pair counts
-    pose_missing: bool  # True: a body has no valid pose, and the interval is that of the others
+    complete: bool  # the interval is at most as wide as the tolerance, and counts all pairs
+    nearest: Optional[Tuple[int, int]]  # the bodies with the least upper end; None if no pair counts
+    pose_missing: bool  # True: the pose of a body is invalid, and the interval counts the other bodies alone
     sphere_tests: int
+    nearest_fixed: Optional[np.ndarray] = None  # (3,), world coordinates: of `nearest`, as a Distance has it
+    nearest_moving: Optional[np.ndarray] = None
+    direction: Optional[np.ndarray] = None
+    triangles: Optional[Tuple[int, int]] = None
 
 
 class Penetration(NamedTuple):
@@ -145,9 +153,9 @@ class Penetration(NamedTuple):
     direction: np.ndarray  # (3,), from there to the other surface's nearest point
     of_moving: bool  # whose surface the point lies on
     triangle: int  # of that surface
-    not_closed: Optional[str]  # "fixed" or "moving": that body has no certain inside, and there is no answer
+    not_closed: Optional[str]  # "fixed" or "moving": the inside of that body is uncertain, and the depth unknown
     narrowest: float
-    points: int  # points of which the distance was measured
+    points: int  # points whose distance was measured
     self_intersecting: Optional[str] = None  # "fixed", "moving" or "both": that surface intersects itself
     capped: bool = False  # the search ended after 4 million pieces of triangles, and `complete` is False
     rotation_error: float = 0.0  # of the given pose: the largest entry of |RᵀR - I|
@@ -213,7 +221,7 @@ class SweepPart(NamedTuple):
     part: int
     outcome: str  # "made"; "there": it was there before; "given up": begun and lost three times, and not tried again
     rows: int
-    seconds: float  # that making it took, also where it was there; NaN where unknown
+    seconds: float  # spent on making it, now or before; NaN if unknown
 
 
 class SweepTable(NamedTuple):
@@ -231,4 +239,4 @@ class SweepStatus(NamedTuple):
     missing: List[int]  # nobody has made them yet, or somebody is making them
     given_up: List[int]  # begun and lost three times: not tried again
     damaged: List[int]  # their files are not those that were written
-    seconds: float  # that making all that are done took
+    seconds: float  # spent on making the parts that are done

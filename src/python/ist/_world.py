@@ -184,8 +184,9 @@ class World(Lone):
 
         question: "near_pairs" lists the pairs with the distance of their root bounds, and asks none. "intersects" tells by
         `answer` whether they intersect: NO, NEAR or YES. "contacts" finds their contacts, for contacts_of(). "distances" bounds
-        their distance by an interval no wider than `tolerance`. "leaf_pairs" finds all pairs of voxels whose bounds overlap,
-        "triangle_pairs" all pairs of triangles with a common point: found_of(row) of the answer has those of one pair of bodies.
+        their distance by an interval no wider than `tolerance`, and finds the nearest points. "leaf_pairs" finds all pairs of
+        voxels whose bounds overlap, "triangle_pairs" all pairs of triangles with a common point: found_of(row) of the answer
+        has those of one pair of bodies.
 
         into: an array of LEAF_PAIR or TRIANGLE_PAIR that is filled by one pair of bodies after the other; by default one of
         65,536. out: an array of WORLD_PAIR that is filled by the rows; by default one with room for all.
@@ -284,15 +285,18 @@ class World(Lone):
         )
 
     def distance(self, tolerance=0.0, *, tests=0, seconds=0.0):
-        """The least distance of all pairs, near or not: an interval no wider than the tolerance."""
+        """The least distance of all pairs, near or not: an interval no wider than the tolerance, and the nearest points."""
         handle = self._enter()
         try:
             budget, limit = budget_of(tests, seconds)
             least = self._least
             check(LIBRARY.ist_world_distance(handle, number_of(tolerance, "tolerance"), limit, addressof(least)))
             nearest = (least.a, least.b) if least.nearest_known else None
+            points = ()
+            if least.points_known:
+                points = (*map(np.array, (least.nearest_fixed, least.nearest_moving, least.direction)), tuple(least.nearest_triangles))
             return LeastDistance(
-                least.lower, least.upper, least.complete == 1, nearest, least.pose_missing == 1, least.sphere_tests
+                least.lower, least.upper, least.complete == 1, nearest, least.pose_missing == 1, least.sphere_tests, *points
             )
         finally:
             self._lock.release()

@@ -45,9 +45,9 @@ IST_C_API ist_status ist_world_create(const ist_world_options* options,
 
 /** Adds a body; `body` takes its number, from 0 in the order of adding. `pose` and `name` may be
  * NULL: the body is then at its mesh's place, and messages name it by its number. The tree may be
- * freed afterwards. Questions
- * then give IST_NOT_PREPARED until the next ist_world_reserve. Errors: IST_POLICY_MISSING,
- * IST_POSE_INVALID, IST_MEMORY_LIMIT; IST_ARGUMENT_INVALID beyond IST_MOST_BODIES. */
+ * freed afterwards. Questions then give IST_NOT_PREPARED until the next ist_world_reserve. Errors:
+ * IST_POLICY_MISSING, IST_POSE_INVALID, IST_MEMORY_LIMIT; IST_ARGUMENT_INVALID beyond
+ * IST_MOST_BODIES. */
 IST_C_API ist_status ist_world_add(ist_world* world, const ist_tree* tree, const double pose[16],
                                    const char* name, uint32_t* body) IST_NOEXCEPT;
 
@@ -80,9 +80,9 @@ IST_C_API ist_status ist_world_get_info(ist_world* world, ist_world_info* info) 
 IST_C_API ist_status ist_world_set_pose(ist_world* world, uint32_t body,
                                         const double pose[16]) IST_NOEXCEPT;
 
-/** Gives the pose at which a pair is asked, from coordinates of `b` to those of `a`: a query of the
- * two trees at this pose has the pair's answers. Errors: IST_POSE_INVALID if one has no valid
- * pose. [real time] */
+/** Gives the pose at which a pair is asked, from coordinates of `b` to coordinates of `a`. A query
+ * of the two trees at this pose has the pair's answers. Errors: IST_POSE_INVALID if the pose of a
+ * body is invalid. [real time] */
 IST_C_API ist_status ist_world_get_pose(ist_world* world, uint32_t a, uint32_t b,
                                         double pose[16]) IST_NOEXCEPT;
 
@@ -121,10 +121,18 @@ typedef struct ist_world_pair {
   double narrowest;      /**< IST_ASK_DISTANCE: no tolerance below this width can be reached */
   uint64_t sphere_tests; /**< tests made, as ist_budget counts them */
   double rotation_error; /**< of the given poses, the larger one: as in ist_query_result */
+  int32_t nearest_known; /**< IST_ASK_DISTANCE: 1: the members below hold the nearest triangles that
+                            were found, as in ist_distance_result but in world coordinates */
+  int32_t reserved;      /**< zero */
+  double nearest_fixed[3], /**< the closest point on the triangle of `a` */
+      nearest_moving[3];   /**< and on the triangle of `b` */
+  double direction[3]; /**< of unit length, from the first point to the second; 0 if the points are
+                          the same */
+  uint32_t nearest_triangles[2]; /**< of the meshes of `a` and of `b` */
 } ist_world_pair;
 
 /** The answer of a world: one element for each pair that is near, sorted by `a` and then by `b`.
- * All other pairs are apart, by more than the reach. */
+ * Any other pair is farther apart than the reach. */
 typedef struct ist_world_result {
   size_t struct_size;    /**< the size of this struct, bytes */
   uint64_t near_pairs;   /**< all pairs that are near, in the array or not */
@@ -146,12 +154,12 @@ IST_C_API ist_status ist_world_ask(ist_world* world, const ist_world_question* q
                                    const ist_budget* budget, ist_world_pair* pairs, size_t capacity,
                                    ist_world_result* result) IST_NOEXCEPT;
 
-/** Copies the first `capacity` contacts of a pair, and its sums, from the last ist_world_ask
- * for IST_ASK_CONTACTS; `count` takes the number of all. Read the pair's ist_world_pair of that
- * call first: it alone tells whether the answer is complete. If its `complete` is 0, a budget
- * ended the search: contacts and sums come from a part of the leaf pairs, and make no force.
- * Coordinates belong to the body added first. `contacts` may be NULL if `capacity` is 0; `sums` may
- * be NULL. Errors: IST_NOT_PREPARED if that call did not ask the pair. [real time] */
+/** Copies the first `capacity` contacts of a pair, and its sums, from the last ist_world_ask for
+ * IST_ASK_CONTACTS; `count` takes the number of all. Coordinates belong to the body added first.
+ * Read the pair's ist_world_pair of that call first: it alone tells whether the answer is complete.
+ * If its `complete` is 0, a budget ended the search. Contacts and sums are then of a part of the
+ * leaf pairs: do not use them as a force. `contacts` may be NULL if `capacity` is 0; `sums` may be
+ * NULL. Errors: IST_NOT_PREPARED if that call did not ask the pair. [real time] */
 IST_C_API ist_status ist_world_get_contacts(ist_world* world, uint32_t a, uint32_t b,
                                             ist_contact* contacts, size_t capacity,
                                             ist_contact_sums* sums, uint64_t* count) IST_NOEXCEPT;
@@ -163,16 +171,22 @@ typedef struct ist_least_distance {
       upper;             /**< and two are no farther apart; both DBL_MAX where no pair counts */
   uint64_t sphere_tests; /**< of all pairs */
   int32_t complete;     /**< 1: the interval is no wider than the tolerance, and counts all pairs */
-  int32_t pose_missing; /**< 1: a body has no valid pose; the interval is that of the others */
-  int32_t nearest_known; /**< 1: `a` and `b` have the least upper end */
-  uint32_t a,            /**< the nearest pair's body that was added first */
-      b;                 /**< and the other one */
-  int32_t reserved;      /**< zero */
+  int32_t pose_missing; /**< 1: a body's pose is invalid; the interval counts the others alone */
+  int32_t nearest_known;   /**< 1: `a` and `b` have the least upper end */
+  uint32_t a,              /**< the nearest pair's body that was added first */
+      b;                   /**< and the other one */
+  int32_t points_known;    /**< 1: the members below are those of ist_world_pair for `a` and `b` */
+  double nearest_fixed[3], /**< the closest point on `a`, world coordinates */
+      nearest_moving[3];   /**< and on `b` */
+  double direction[3]; /**< of unit length, from the first point to the second; 0 if the points are
+                          the same */
+  uint32_t nearest_triangles[2]; /**< of the meshes of `a` and of `b` */
 } ist_least_distance;
 
 /** Bounds the least distance of all pairs that are not ignored, near or not, by an interval no
- * wider than `tolerance`. Pairs that were not reserved for count with their roots. Errors:
- * IST_ARGUMENT_INVALID, IST_NOT_PREPARED. [real time] */
+ * wider than `tolerance`, and gives the nearest points of the nearest pair if it was measured.
+ * Pairs that were not reserved for count with their roots. Errors: IST_ARGUMENT_INVALID,
+ * IST_NOT_PREPARED. [real time] */
 IST_C_API ist_status ist_world_distance(ist_world* world, double tolerance,
                                         const ist_budget* budget,
                                         ist_least_distance* result) IST_NOEXCEPT;
