@@ -108,7 +108,6 @@ double convert_unit(const LoadedBody& fixed, LoadedBody& moving, bool is_moving_
             "--unit-moving, and it is converted",
             to_string(moving.unit), fixed.name(), to_string(fixed.unit));
   refuse_if(!is_moving_told, moving.name(),
-
             "its unit is {}, and the unit of {} is {}: give --unit-moving {} to convert the mesh",
             to_string(moving.unit), fixed.name(), to_string(fixed.unit), to_string(moving.unit));
   // Both in micrometres are whole numbers, so that the factor is rounded once.

@@ -138,7 +138,8 @@ TEST_F(Bench, RefusesWhatItCannotDo) {
     EXPECT_EQ(result.exit_code, 2) << seconds;
     EXPECT_TRUE(says(result.err, "--seconds"));
   }
-  refuses({"--voxel-size", "-1"}, 2, "--voxel-size");
+  refuses({"--voxel-size", "0"}, 2, "--voxel-size: 0 is no size");
+  refuses({"--voxel-size", "-1"}, 2, "voxel size -1: give a positive number");
   refuses({"--against", "fcl"}, 2, "--against: no such option");
   refuses({path("none.stl"), moving_}, 3, "none.stl");
 }

@@ -14,23 +14,14 @@
 namespace ist::test {
 namespace {
 
-/// A ball that a hand puts on a box and pushes along, with every effect. Millimetres, 1 kHz.
-[[nodiscard]] Scene scene_with_all_effects();
-
+// A ball that a hand puts on a box and pushes along, with every effect. Millimetres, 1 kHz.
 Scene scene_with_all_effects() {
-  using Kind = BuiltInShape::Kind;
   const auto waypoint = [](double time, double x, double z) {
     return Waypoint{time, {Eigen::Matrix3d::Identity(), 1e-3 * Eigen::Vector3d(x, 0, z)}};
   };
-  Scene scene{};
-  scene.file = "scene.toml";
-  scene.unit = 1e-3;
-  scene.fixed.front().source =
-      BuiltInShape{.kind = Kind::kBox, .size = Eigen::Vector3d(40, 40, 10)};
-  scene.fixed.front().voxel_size = 1;
-  scene.held.front().source = BuiltInShape{.kind = Kind::kSphere, .radius = 5};
-  scene.held.front().voxel_size = 0.5;
-  scene.held.front().translation = {0, 0, 11};
+  Scene scene{.unit = 1e-3};
+  scene.fixed = {box_body("box", {-20, -20, -5}, {20, 20, 5})};
+  scene.held = {ball_body("ball", {0, 0, 11}, 5)};
   HandSettings hand{};
   hand.mechanics = {2, 2e-3, 0};
   hand.mass = 0.2;

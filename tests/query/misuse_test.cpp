@@ -12,6 +12,7 @@
 #include "ist/query/query.h"
 #include "ist/query/reference/reference_query.h"
 #include "ist/query/world/world.h"
+#include "query/every_verb.h"
 #include "query/query_cases.h"
 #include "support/errors.h"
 #include "support/shapes.h"
@@ -178,19 +179,17 @@ TEST_F(Misuse, OfVoxelsThatAreNotThereTakesLessMemory) {
 TEST_F(Misuse, OfAPoseIsAStatusOfEveryVerb) {
   const SphereTree exact = ball(0.25, true);
   Query query(exact, exact);
-  ContactManifold manifold(exact, exact, query.policy());
+  VerbRoom room(query);
   Eigen::Isometry3d bad = pose_;
   bad.translation().x() = kNotANumber;
-  EXPECT_EQ(query.intersects(bad).status, QueryStatus::kInvalidPose);
+  for (const Budget& budget : {Budget{}, Budget{.tests = 10}}) {
+    ask_every_verb(query, bad, room, budget, [](const auto& result) {
+      EXPECT_EQ(result.status, QueryStatus::kInvalidPose);
+      EXPECT_FALSE(result.complete);
+    });
+  }
   EXPECT_EQ(query.intersects(bad).answer, Answer::kUnknown);
-  EXPECT_FALSE(query.intersects(bad).complete);
-  EXPECT_EQ(query.leaf_pairs(bad, {}).status, QueryStatus::kInvalidPose);
-  EXPECT_EQ(query.leaf_pairs(bad, {}, {.tests = 10}).status, QueryStatus::kInvalidPose);
-  EXPECT_EQ(query.contacts(bad, manifold).status, QueryStatus::kInvalidPose);
-  EXPECT_EQ(query.distance(bad, 0.1).status, QueryStatus::kInvalidPose);
   EXPECT_EQ(query.distance(bad, 0.1).distance.upper, HUGE_VAL);
-  EXPECT_EQ(query.triangle_pairs(bad, {}).status, QueryStatus::kInvalidPose);
-  EXPECT_EQ(query.near_pairs(bad, 0.1, {}).status, QueryStatus::kInvalidPose);
   EXPECT_STREQ(to_string(query.leaf_pairs(bad, {}).status), "invalid-pose");
 }
 
@@ -198,30 +197,20 @@ TEST_F(Misuse, OfAPoseIsAStatusOfEveryVerb) {
 TEST_F(Misuse, OfARoughPoseSaysHowFarItWas) {
   const SphereTree exact = ball(0.25, true);
   Query query(exact, exact), without(tree_, tree_);
-  ContactManifold manifold(exact, exact, query.policy());
+  VerbRoom room(query);
   for (const double skew : {0.0, 1e-7, 4e-4, 0.1}) {
     Eigen::Isometry3d rough = pose_;
     rough(0, 1) = skew;
     const bool is_rigid = skew < 1e-3;
-    const auto expect = [&](QueryStatus status, double error) {
-      EXPECT_EQ(status, is_rigid ? QueryStatus::kDone : QueryStatus::kInvalidPose) << skew;
-      EXPECT_EQ(error, rotation_error(rough)) << skew;
-      EXPECT_NEAR(error, std::max(skew, skew * skew), 1e-15);
-    };
     const auto expect_of = [&](const auto& result) {
-      expect(result.status, result.rotation_error);
+      EXPECT_EQ(result.status, is_rigid ? QueryStatus::kDone : QueryStatus::kInvalidPose) << skew;
+      EXPECT_EQ(result.rotation_error, rotation_error(rough)) << skew;
+      EXPECT_NEAR(result.rotation_error, std::max(skew, skew * skew), 1e-15);
     };
-    expect_of(query.intersects(rough));
+    ask_every_verb(query, rough, room, {}, expect_of);
+    ask_every_verb(query, rough, room, {.tests = 10}, expect_of);
     expect_of(without.intersects(rough));
-    expect_of(query.leaf_pairs(rough, {}));
-    expect_of(query.leaf_pairs(rough, {}, {.tests = 10}));
-    expect_of(query.contacts(rough, manifold));
-    expect_of(query.distance(rough, 0.1));
     expect_of(without.distance(rough, 0.1));
-    expect_of(query.triangle_pairs(rough, {}));
-    expect_of(query.near_pairs(rough, 0.1, {}));
-    std::array<NearPair, Query::kMostNearParts> parts;
-    expect_of(query.near_parts(rough, {0, 0}, 0.1, parts));
     expect_of(ReferenceQuery(exact, exact, SpherePolicy::kSlab).leaf_pairs(rough, {}));
     EXPECT_EQ(query.intersects(rough).answer, is_rigid ? Answer::kYes : Answer::kUnknown);
   }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "haptics/bodies/body_cases.h"
 #include "query/query_cases.h"
 #include "scene/scene_case.h"
 #include "support/effort.h"
@@ -15,17 +16,11 @@ constexpr int kTicks = 700;
 
 // A box that is put on a larger one, tilted, and pushed along; with all that is felt at contacts.
 Scene tilted_scene() {
-  Scene scene{};
-  scene.file = "scene.toml";
-  scene.unit = 1e-3;
-  scene.fixed.front().source =
-      BuiltInShape{.kind = BuiltInShape::Kind::kBox, .size = Vector3d(30, 20, 6)};
-  scene.fixed.front().voxel_size = 1;
-  scene.held.front().source = BuiltInShape{.kind = BuiltInShape::Kind::kSphere, .radius = 4};
-  scene.held.front().voxel_size = 0.5;
-  scene.held.front().translation = {1, 2, 7.5};
+  Scene scene{.unit = 1e-3};
+  scene.fixed = {box_body("box", {-15, -10, -3}, {15, 10, 3})};
+  scene.held = {ball_body("ball", {1, 2, 7.5}, 4)};
   scene.device =
-      ScriptSettings{{.damping = 2, .angular_damping = 2e-3},
+      ScriptSettings{kDeviceUnderTest,
                      {},
                      {{0, {}},
                       {0.4, {Eigen::Matrix3d::Identity(), Vector3d(0, 0, -1.5e-3)}},

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "answers/formats/glb_writer.h"
 #include "answers/occlusion/bite_direction.h"
 #include "answers/occlusion/bite_hints.h"
 #include "answers/occlusion/map_colours.h"
@@ -122,6 +123,15 @@ std::vector<NamedPolyData> bite_arrays(const Bite& bite, const BiteSelection& se
     out[i].data.point_arrays.push_back({"SignKnown", std::move(known)});
   }
   return out;
+}
+
+void write_bite_glb(const Bite& bite, const BiteSelection& selection, OutputFile& file) {
+  std::vector<NamedPolyData> bodies = bite_surfaces(bite, selection);
+  for (NamedPolyData& body : bodies) {
+    body.data.normals = vertex_normals(body.data);
+    body.data.point_arrays.clear();
+  }
+  write_glb(bodies, 1e-3 / bite.units_per_mm, file);
 }
 
 }  // namespace ist::answers

@@ -6,6 +6,7 @@
 
 #include "answers/formats/poly_data.h"
 #include "answers/occlusion/bite.h"
+#include "ist/base/files.h"
 
 namespace ist::answers {
 
@@ -50,5 +51,9 @@ struct BiteSelection {
 /// other body, -1 beyond the reach) and "SignKnown" (uint8), and without colours.
 [[nodiscard]] std::vector<NamedPolyData> bite_arrays(const Bite& bite,
                                                      const BiteSelection& selection);
+
+/// Writes the coloured surfaces to a .glb, in metres and with smooth normals. Throws
+/// kFileUnwritable.
+void write_bite_glb(const Bite& bite, const BiteSelection& selection, OutputFile& file);
 
 }  // namespace ist::answers

@@ -79,13 +79,13 @@ std::pair<Division, Division> divisions(const SideOptions& options, PatientFrame
   const PatientFrame frame = given == PatientFrame::kUnknown ? of_files : given;
   if (frame != PatientFrame::kUnknown) {
     const double sign = frame == PatientFrame::kLps ? 1 : -1;
-    const Vector to_left(sign, 0, 0), to_cache(0, -sign, 0);
+    const Vector to_left(sign, 0, 0), to_front(0, -sign, 0);
     refuse_if(left && !(left->dot(to_left) > 0), "--left",
               "it points to the right in the files' frame, {}", to_string(frame));
-    refuse_if(front && !(front->dot(to_cache) > 0), "--front",
+    refuse_if(front && !(front->dot(to_front) > 0), "--front",
               "it points to the back in the files' frame, {}", to_string(frame));
     if (!left) left = to_left;
-    if (!front) front = to_cache;
+    if (!front) front = to_front;
   }
   refuse_if(left && front && !(std::abs(left->dot(*front)) < 0.99), "--front",
             "it is the direction of --left: give another");

@@ -47,6 +47,7 @@ struct BenchWay {
 };
 
 Bodies built_in_jaws(const BodyFiles& files) {
+  check_voxel_size(files.voxel_size);
   const BuildOptions build{.voxel_size = files.voxel_size.value_or(0.2),  // mm
                            .max_memory = files.max_memory};
   std::vector<std::string> warnings;
@@ -156,7 +157,7 @@ void add_bench(CLI::App& app) {
   auto& [files, poses, seconds, json] = *options;
   add_file(*command, "FIXED", files.fixed, "body that stays; by default a jaw");
   add_file(*command, "MOVING", files.moving, "body that is moved");
-  command->add_option("--voxel-size", files.voxel_size, "mesh units")->check(CLI::PositiveNumber);
+  command->add_option("--voxel-size", files.voxel_size, "mesh units");
   add_file(*command, "--poses", poses, "JSON file; by default 12 of a closing");
   command->add_option("--seconds", seconds, "time for all turns")->capture_default_str();
   add_units_and_frame(*command, files);

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "answers/formats/format.h"
-#include "answers/formats/glb_writer.h"
 #include "answers/formats/ply_writer.h"
 #include "answers/formats/vtp_writer.h"
 #include "answers/json_parts.h"
@@ -148,14 +147,8 @@ void write(const Bite& bite, const Output& output, BiteSelection selection, Deci
       return write_vtp(joined(bite_arrays(bite, selection)), *output.file);
     case FileFormat::kPly:
       return write_ply(joined(bite_surfaces(bite, selection)), *output.file, comment);
-    case FileFormat::kGlb: {
-      std::vector<NamedPolyData> bodies = bite_surfaces(bite, selection);
-      for (NamedPolyData& body : bodies) {
-        body.data.normals = vertex_normals(body.data);
-        body.data.point_arrays.clear();
-      }
-      return write_glb(bodies, 1e-3 / bite.units_per_mm, *output.file);
-    }
+    case FileFormat::kGlb:
+      return write_bite_glb(bite, selection, *output.file);
     case FileFormat::kCsv:
       return write_bite_csv(bite, sign, *output.file);
     default:

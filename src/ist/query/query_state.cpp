@@ -50,10 +50,6 @@ bool have_triangles(const SphereTree& fixed, const SphereTree& moving,
          first(room.triangles, moving).triangles() != nullptr;
 }
 
-CacheOptions coherent_options(const QueryOptions& options) {
-  return {options.frontier_pairs, options.front_pairs, options.workers, options.period};
-}
-
 // Returns the bytes that a query reserves for the leaves of such a plan.
 std::size_t bytes_of_leaves(const SearchPlan& plan, const QueryOptions& options,
                             const QueryRoom& room) {
@@ -62,7 +58,7 @@ std::size_t bytes_of_leaves(const SearchPlan& plan, const QueryOptions& options,
                             : Search::bytes_for(plan, options.frontier_pairs, room.search_items)) +
       (kWindow + kLeafPairSpare) * sizeof(LeafPair);
   if (options.front_pairs > 0) {
-    bytes += CachedSearch::bytes_for(plan, coherent_options(options));
+    bytes += CachedSearch::bytes_for(plan, cache_options(options));
   }
   return bytes;
 }
@@ -151,7 +147,7 @@ void QueryState::reserve_leaves(const QueryOptions& options, const QueryRoom& ro
     searches.emplace<Search>(*plan, kernels, options.frontier_pairs, room.search_items);
   }
   if (options.front_pairs > 0) {
-    cached = &own_cache.emplace(fixed, moving, policy, *plan, kernels, coherent_options(options));
+    cached = &own_cache.emplace(fixed, moving, policy, *plan, kernels, cache_options(options));
   }
   window.resize(kWindow + kLeafPairSpare);
 }

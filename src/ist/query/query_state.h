@@ -69,6 +69,11 @@ struct QueryRoom {
   return margin >= 0 && margin < std::numeric_limits<double>::infinity();
 }
 
+/// Returns the options of the pair cache of such a query.
+[[nodiscard]] inline CacheOptions cache_options(const QueryOptions& options) noexcept {
+  return {options.frontier_pairs, options.front_pairs, options.workers, options.period};
+}
+
 /// The memory of a Query, and the steps that its verbs share.
 struct QueryState {
   QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tree,

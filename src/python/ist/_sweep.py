@@ -10,6 +10,7 @@ import numpy as np
 
 from ._answers import SweepPart, SweepStatus, SweepTable
 from ._arrays import address, by_columns, count_of
+from ._c import IST_PART_DAMAGED as DAMAGED, IST_PART_DONE as DONE, IST_PART_GIVEN_UP as GIVEN_UP, IST_PART_MISSING as MISSING
 from ._c import SweepColumn, SweepInfo, SweepMergeResult, SweepPart as PartInfo
 from ._errors import check
 from ._follow import Follower
@@ -18,7 +19,6 @@ from ._library import LIBRARY
 from ._mesh import path_bytes
 
 COLUMN_TYPES = (None, "<u8", "<i4", "<f8")  # by the library's numbers
-MISSING, DONE, GIVEN_UP, DAMAGED = range(1, 5)
 
 
 def absolute(path):

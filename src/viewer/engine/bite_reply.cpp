@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "answers/formats/glb_writer.h"
 #include "answers/json_parts.h"
 #include "answers/occlusion/bite_files.h"
 #include "answers/occlusion/bite_maker.h"
@@ -93,13 +92,10 @@ void fill_bite(const answers::Bodies& bodies, const Asked& asked, Progress& prog
 std::vector<std::uint8_t> coloured_glb(const answers::Bodies& bodies, const Asked& asked,
                                        Progress& progress) {
   const answers::Bite bite = bite_of(bodies, asked, progress);
-  std::vector<answers::NamedPolyData> surfaces = answers::bite_surfaces(bite, {});
-  for (answers::NamedPolyData& body : surfaces) {
-    body.data.normals = answers::vertex_normals(body.data);
-    body.data.point_arrays.clear();
-  }
   const std::filesystem::path file = "page.glb";
-  answers::write_glb(surfaces, 1e-3 / bite.units_per_mm, file);
+  OutputFile output(file);
+  answers::write_bite_glb(bite, {}, output);
+  output.commit();
   InputFile input(file);
   std::vector<std::uint8_t> bytes(std::filesystem::file_size(file));
   bytes.resize(input.read(bytes.data(), bytes.size()));

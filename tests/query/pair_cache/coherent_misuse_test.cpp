@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "query/every_verb.h"
 #include "query/pair_cache/kept_answers.h"
 #include "query/triangles/triangle_tree.h"
 #include "support/errors.h"
@@ -106,7 +107,8 @@ TEST_F(TwoThreads, InOneQueryTheSecondIsToldThatItIsBusy) {
     QueryOptions options;
     options.front_pairs = front_pairs;
     Query query(ball_, ball_, options);
-    ContactManifold points(ball_, ball_, query.policy(), {.margin = 2});
+    VerbRoom room(query, {.margin = 2});
+    ContactManifold& points = room.manifold;
     QueryResult before;
     for (int i = 0; i < 20; ++i) before = query.contacts(pose_, points);
     ASSERT_FALSE(points.points().empty());
@@ -129,25 +131,22 @@ TEST_F(TwoThreads, InOneQueryTheSecondIsToldThatItIsBusy) {
       let_go();
       FAIL() << "two threads are in one query";
     }
-    std::vector<LeafPair> pairs(10, LeafPair{7, 7});
-    std::vector<TrianglePair> triangles(10);
+    const std::vector<LeafPair> sevens(room.leaf_pairs.size(), LeafPair{7, 7});
+    room.leaf_pairs = sevens;
     PairCollector none;
-    for (const QueryResult& result :
-         {query.leaf_pairs(pose_, pairs), query.leaf_pairs(pose_, none),
-          query.leaf_pairs(pose_, pairs, {.tests = 10}), query.contacts(pose_, points)}) {
+    const auto expect_busy = [](const auto& result) {
       EXPECT_EQ(result.status, QueryStatus::kBusy);
       EXPECT_FALSE(result.complete);
-      EXPECT_EQ(result.leaf_pairs, 0u);
+    };
+    for (const Budget& budget : {Budget{}, Budget{.tests = 10}}) {
+      ask_every_verb(query, pose_, room, budget, expect_busy);
     }
-    EXPECT_EQ(query.intersects(pose_).status, QueryStatus::kBusy);
+    expect_busy(query.leaf_pairs(pose_, none));
     EXPECT_EQ(query.intersects(pose_).answer, ist::Answer::kUnknown);
-    EXPECT_EQ(query.distance(pose_, 0.1).status, QueryStatus::kBusy);
-    EXPECT_EQ(query.triangle_pairs(pose_, triangles).status, QueryStatus::kBusy);
-    EXPECT_EQ(query.near_pairs(pose_, 0.1, {}).status, QueryStatus::kBusy);
     EXPECT_STREQ(to_string(QueryStatus::kBusy), "busy");
     // Nothing was changed.
     EXPECT_TRUE(none.pairs.empty());
-    EXPECT_EQ(pairs, std::vector<LeafPair>(10, LeafPair{7, 7}));
+    EXPECT_EQ(room.leaf_pairs, sevens);
     EXPECT_TRUE(same(points.sums(), sums));
     EXPECT_EQ(points.points().size(), contacts);
     let_go();

@@ -19,11 +19,6 @@ QueryOptions without_cache(const WorldOptions& options) {
   return query;
 }
 
-CacheOptions cache_options(const WorldOptions& options) {
-  const QueryOptions& query = options.query;
-  return {query.frontier_pairs, query.front_pairs, query.workers, query.period};
-}
-
 SpherePolicy policy_of_any(const AskerRoom& room, const WorldOptions& options) noexcept {
   return QueryState::policy_of(*room.query.voxels, *room.query.voxels, options.query);
 }
@@ -84,12 +79,12 @@ AskerRoom AskerRoom::of(std::span<const AskedBody> bodies, const WorldOptions& o
 CacheSlot::CacheSlot(const AskerRoom& room, const WorldOptions& options)
     : plan(*room.query.voxels, *room.query.voxels, policy_of_any(room, options)),
       cached(*room.query.voxels, *room.query.voxels, policy_of_any(room, options), plan,
-             select_kernels(options.query.target), cache_options(options),
+             select_kernels(options.query.target), cache_options(options.query),
              room.query.search_items) {}
 
 std::uint64_t CacheSlot::bytes_for(const AskerRoom& room, const WorldOptions& options) {
   const SearchPlan plan(*room.query.voxels, *room.query.voxels, policy_of_any(room, options));
-  return CachedSearch::bytes_for(plan, cache_options(options), room.query.search_items);
+  return CachedSearch::bytes_for(plan, cache_options(options.query), room.query.search_items);
 }
 
 void CacheSlot::bind(BodyPair pair, const AskedBody& a, const AskedBody& b,
