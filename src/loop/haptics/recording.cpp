@@ -4,6 +4,23 @@
 
 namespace ist {
 
+namespace {
+
+ContactRecord record_of(const ContactPoint& point) noexcept {
+  ContactRecord record{};
+  std::copy_n(point.position.data(), 3, record.position.begin());
+  std::copy_n(point.normal.data(), 3, record.normal.begin());
+  std::copy_n(point.force.data(), 3, record.force.begin());
+  record.gap = point.gap;
+  record.fixed_triangle = point.triangles.fixed;
+  record.held_triangle = point.triangles.moving;
+  record.fixed = static_cast<std::uint32_t>(point.fixed);
+  record.held = static_cast<std::uint32_t>(point.held);
+  return record;
+}
+
+}  // namespace
+
 TickRecord record_of(std::uint64_t number, double dt, const Tick& tick,
                      bool device_known) noexcept {
   TickRecord record{};
@@ -15,6 +32,11 @@ TickRecord record_of(std::uint64_t number, double dt, const Tick& tick,
   record.device_known = device_known;
   record.fault = tick.fault;
   record.held = tick.held;
+  record.halved = tick.halved;
+  record.steps = tick.steps;
+  for (const ContactPoint& point : tick.points) {
+    record.points[record.point_count++] = record_of(point);
+  }
   record.contacts = tick.contacts;
   record.proximity = tick.proximity;
   record.leaf_pairs = tick.leaf_pairs;

@@ -16,8 +16,6 @@ constexpr double kGrip = 4;
 constexpr double kTouch = 2;
 // The most features that share the stiffness of so many whole ones (ToolContact).
 constexpr double kFullFeatures = 10;
-// At most six bounds push.
-constexpr std::size_t kMostContacts = 6;
 
 // The directions of the friction cone, round a circle.
 constexpr double kHalf = 0.70710678118654752440;
@@ -36,8 +34,8 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> across(const Eigen::Vector3d& n) noe
 
 Wall::Wall(const WallSettings& settings) : settings_(settings), motion_(kMostBounds) {
   bounds_.reserve(kMostBounds);
-  contacts_.reserve(kMostContacts);
-  noted_.reserve(kMostContacts);
+  contacts_.reserve(Tick::kMostPoints);
+  noted_.reserve(Tick::kMostPoints);
 }
 
 void Wall::add(const HandPair& bodies, std::unique_ptr<WallPair> pair) {

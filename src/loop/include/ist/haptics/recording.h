@@ -17,6 +17,17 @@
 
 namespace ist {
 
+/// A ContactPoint in plain numbers.
+struct ContactRecord {
+  std::array<double, 3> position,  ///< on the fixed body, m
+      normal,                      ///< of unit length, from the fixed body to the held one
+      force;                       ///< on the tool, N
+  double gap;                      ///< m
+  std::uint32_t fixed_triangle,    ///< by its index in the mesh
+      held_triangle,               ///< likewise
+      fixed, held;                 ///< the bodies, by their numbers
+};
+
 /// A tick as it leaves the servo loop, in plain numbers that may be copied word by word. SI, scene
 /// axes.
 struct TickRecord {
@@ -30,10 +41,15 @@ struct TickRecord {
   std::array<double, 6> wrench;         ///< on the hand, N and N m about the tool's origin
   bool device_known,                    ///< false: `device` is the last pose that was known
       fault,                            ///< Tick::fault
-      held;                             ///< Tick::held
+      held,                             ///< Tick::held
+      halved;                           ///< Tick::halved
+  std::int32_t steps;                   ///< Tick::steps
   std::optional<QueryResult> contacts,  ///< Tick::contacts, mesh units
       proximity;                        ///< Tick::proximity, mesh units
   double leaf_pairs;                    ///< load-bearing leaf pairs, by weight
+  std::uint32_t point_count;            ///< of Tick::points
+  /// The first `point_count` are Tick::points.
+  std::array<ContactRecord, Tick::kMostPoints> points;
   std::optional<HandChange> change;     ///< Tick::change
   std::int64_t late_ns;                 ///< from the tick's release to its start
   std::int64_t execution_ns;            ///< from its start to the end of Device::write
@@ -55,7 +71,9 @@ struct TickRecord {
 struct RecordedTick {
   std::uint64_t tick = 0;                ///< its number, from 0
   std::optional<Placement> device = {};  ///< empty: the device gave no pose
-  TickBudget budget = {};  ///< no tests for a query that a deadline ended, else no limit
+  /// No tests for a query that a deadline ended. In a tick that was held, the steps that it made.
+  /// Else no limit.
+  TickBudget budget = {};
 };
 
 /// Replays a tick. If all earlier ticks were replayed before, the record equals the recorded one,

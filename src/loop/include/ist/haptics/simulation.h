@@ -90,7 +90,9 @@ struct Tick {
   bool held = false;
   bool halved = false;  ///< the end of a step was not free, and the step was shortened
   int steps = 0;        ///< that the tool made; 0 with `springs`
-  /// The contacts that push the tool, at most six; empty with `springs`. Valid until the next tick.
+  /// The most contacts that push the tool at once.
+  static constexpr std::size_t kMostPoints = 6;
+  /// The contacts that push the tool; empty with `springs`. Valid until the next tick.
   std::span<const ContactPoint> points = {};
   /// The results of the queries at the tool's pose before the tick, over all pairs of a fixed and a
   /// held body: counts are sums, the distance is the least, and all pairs must be complete. Mesh
