@@ -24,6 +24,7 @@ struct BodyFrames {
 struct ToolContactOptions {
   SpherePolicy policy = SpherePolicy::kTable;
   double margin = 0.25;               ///< the distance at which contacts begin
+  double full_area = 10;              ///< of a contact with the whole stiffness, in leaf pairs
   double reach = 0.375;               ///< leaf pairs count whose bounds are no farther apart
   int workers = 1;                    ///< 2: a second thread helps the search
   std::size_t front_pairs = 1 << 16;  ///< the most leaf pairs kept from tick to tick
@@ -57,6 +58,7 @@ class ToolContactQuery {
 
   BodyFrames frames_;
   double area_;                  // of a whole leaf pair, mesh units squared
+  double full_area_;             // of a contact with the whole stiffness, mesh units squared
   double size_;                  // the mean of the two voxel sizes, mesh units
   double fixed_radius_;          // bounds the fixed body round its frame's origin, mesh units
   Eigen::Vector3d held_origin_;  // of the held tree's frame, held mesh coordinates

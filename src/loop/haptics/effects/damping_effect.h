@@ -30,9 +30,10 @@ inline void brake(const ToolContacts& contacts, double damping, double dt, const
 ///
 ///     f = b · stiffness_fraction · max(0, -n · u / dt) · n
 ///
-/// with the displacement u of the point in a tick of dt seconds (brake). The force does not grow
-/// with the depth: the fraction is 0 where a contact begins, which makes the wrench continuous, and
-/// a damper that grew with the depth would be weakest at the impact.
+/// with the damping b of a whole contact and the displacement u of the point in a tick of dt
+/// seconds (brake). The force does not grow with the depth: the fraction is 0 where a contact
+/// begins, which makes the wrench continuous, and a damper that grew with the depth would be
+/// weakest at the impact.
 ///
 /// Needs: normals, velocity. Source: the damper of K. H. Hunt and F. R. E. Crossley, Coefficient of
 /// restitution interpreted as damping in vibroimpact, ASME J. Applied Mechanics 42(2), 1975, with
