@@ -21,7 +21,7 @@ inline constexpr NumberRange kInstant{0, 1e6, "s"};
 inline constexpr NumberRange kLength{1e-12, 1e12, "in the scene's unit"};
 inline constexpr NumberRange kOpening{0, 20, "mm"};
 inline constexpr NumberRange kLengthOrNone{0, 1e12, "in the scene's unit"};
-inline constexpr NumberRange kArea{0, 1e24, "in the scene's unit squared"};
+inline constexpr NumberRange kArea{0, 1e12, "in the scene's unit squared"};
 inline constexpr NumberRange kPlace{-1e12, 1e12, "in the scene's unit"};
 inline constexpr NumberRange kStiffness{0, 1e6, "N/m"};
 inline constexpr NumberRange kAngularStiffness{0, 1e6, "N m/rad"};
