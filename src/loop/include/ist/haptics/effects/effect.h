@@ -201,8 +201,9 @@ struct SpringsSettings {
   bool allow_breaking = false;  ///< a wall may break at less force than the coupling exerts
 };
 
-/// Returns the greatest force that the wall of `springs` bears, N: stiffness * half a voxel. A pair
-/// of voxels is at most half a voxel deep in the mean.
+/// Returns the greatest force that the wall of `springs` bears, N: stiffness * half a voxel, since
+/// pairs of voxels are about half a voxel deep in the mean before the tool passes through.
+/// Measured: a ball passes at 0.86 to 0.95 of it, the flat face of a block at 1.2 to 1.6.
 /// @param voxel_size the mean of the two bodies' voxel sizes, m
 [[nodiscard]] constexpr double breaking_force(const SpringsSettings& settings,
                                               double voxel_size) noexcept {
