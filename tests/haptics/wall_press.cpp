@@ -70,8 +70,10 @@ Simulation simulation_of(const Wall& wall, const PressSettings& settings) {
                                 .dt = 1 / settings.rate};
   detail::add_two_bodies(
       parts, frames, kMillimetre * surface_radius(*wall.held),
-      std::make_unique<ToolContactQuery>(*wall.fixed, *wall.held, frames,
-                                         ToolContactOptions{SpherePolicy::kSlab, 0.5}));
+      std::make_unique<ToolContactQuery>(
+          *wall.fixed, *wall.held, frames,
+          ToolContactOptions{
+              .policy = SpherePolicy::kSlab, .margin = wall.margin, .full_area = wall.full_area}));
   parts.effects.push_back(
       std::make_unique<SpringsEffect>(SpringsSettings{.stiffness = wall.contact_stiffness}));
   return detail::simulation_from(std::move(parts));
@@ -110,7 +112,9 @@ Wall tip_wall() {
           false,
           axis(2, -1),
           5e-3,
-          2e4};
+          SpringsSettings().stiffness,
+          0,
+          12.0 / (160 * 160) / (0.5 * 0.5)};
 }
 
 PressResult press(const Wall& wall, const PressSettings& settings) {

@@ -86,8 +86,8 @@ void ToolContactQuery::add_to(ToolContacts& contacts, const Placement& tool) con
   }
 }
 
-// The terms of a leaf pair are those of the manifold's rates, divided by the area that shares the
-// stiffness. That area changes too. A torque turns about the tool's origin.
+// Divides the manifold's rates of a leaf pair by the area that shares the stiffness. That area
+// changes too. A torque turns about the tool's origin.
 void ToolContactQuery::add_rates(SpringRates& rates, double fraction) const noexcept {
   const ContactRates& of_pair = manifold_.rates();
   const double from_origin = std::sqrt((held_origin_ - frames_.tool_origin).squaredNorm());

@@ -16,7 +16,7 @@ namespace ist {
 ///
 /// Needs: proximity, velocity. Source: the pre-contact braking force of W. A. McNeely, K. D.
 /// Puterbaugh and J. J. Troy, Six degree-of-freedom haptic rendering using voxel sampling, SIGGRAPH
-/// 1999. The normal is the normal of the tool's leaf; proximity voxels have none, so a pair counts
+/// 1999. Proximity voxels have no normals. A pair takes the normal of the tool's leaf, and counts
 /// for half.
 class ProximityEffect final : public Effect {
  public:

@@ -12,11 +12,11 @@ namespace ist {
 /// from the fixed body. At the pose of the query the wrench is the sum over all leaf pairs, none
 /// merged (ToolContacts::spring); the points give its change.
 ///
-/// Within a tick the change is extrapolated to kLead times the motion, because a contact that
-/// deepens gains pairs and weight: where surfaces first meet, the sum grows 1.5 times as steeply as
+/// Within a tick the change is extrapolated to kLead times the motion. A contact that deepens gains
+/// pairs and weight, until it has the full area. Meanwhile the sum grows 1.5 times as steeply as
 /// its springs on a flat face, and 4 times on a ball of two voxels. A force that lags behind its
-/// depth returns more energy than it took, which would make a coupling active within its border; a
-/// force that leads only damps. At rest nothing is extrapolated.
+/// depth returns more energy than it took, and makes a coupling active within its border. A force
+/// that leads only damps. At rest nothing is extrapolated.
 ///
 /// Needs: normals, depth. Source: tangent-plane force model and averaging of many contacts, W. A.
 /// McNeely, K. D. Puterbaugh and J. J. Troy, Six degree-of-freedom haptic rendering using voxel

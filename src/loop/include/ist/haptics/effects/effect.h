@@ -15,11 +15,11 @@ namespace ist {
 struct ToolContact {
   Eigen::Vector3d arm;     ///< from the tool's origin to the point
   Eigen::Vector3d normal;  ///< of unit length, from the fixed body to the held one
-  double depth;            ///< at least 0, measured from the depth at which contacts begin
+  double depth;            ///< at least 0; 0 where contacts begin
   /// The point's part of the stiffness and the damping of its contact, 0 to 1: the point's area
   /// divided by the area of all points of its pair of bodies, or by SpringsSettings::full_area if
-  /// that is more. Many points share one stiffness, so that a broad contact is no stiffer than the
-  /// loop can bear (McNeely et al. 1999, section 4.4).
+  /// that is more. Many points share one stiffness. So a broad contact is as stiff as a small one
+  /// (McNeely et al. 1999, section 4.4).
   double stiffness_fraction;
 
   /// The displacement of the point for a small motion of the tool, metres.
@@ -79,7 +79,7 @@ class ToolContacts {
   [[nodiscard]] std::span<const ToolContact> points(const ContactPair& pair) const noexcept {
     return points().subspan(pair.begin, pair.end - pair.begin);
   }
-  /// The pairs, by ascending number: all that were asked, with points or without.
+  /// The pairs of this tick, with points or without, by ascending number.
   [[nodiscard]] std::span<ContactPair> pairs() noexcept { return pairs_; }
   /// The same, to read.
   [[nodiscard]] std::span<const ContactPair> pairs() const noexcept { return pairs_; }
@@ -135,7 +135,7 @@ struct EffectNeeds {
 
 /// The input of effects at a tick, before the tool moves: SI, scene axes.
 struct EffectInput {
-  const Placement& tool;         ///< the pose at which the contacts were found
+  const Placement& tool;         ///< the pose of the contacts
   const ToolContacts& contacts;  ///< empty if no effect needs contacts
   /// Points near the fixed bodies, without a depth; empty if no effect needs proximity.
   const ToolContacts& proximity;
@@ -186,17 +186,18 @@ struct ContactSettings {
 
 /// `friction`: surfaces in contact stick, then slide. It is a part of `contact`.
 struct FrictionSettings {
-  double coefficient = 0.3;  ///< ratio of tangential to normal force at which a contact slides
+  double coefficient =
+      0.3;  ///< of friction: the largest tangential force divided by the normal force
 };
 
 /// `springs`: springs at pairs of voxels push the surfaces apart. They give way under load. Beyond
 /// breaking_force() the tool passes through.
 struct SpringsSettings {
   double stiffness = 40000;  ///< of a whole contact, N/m, whatever the voxel size
-  double margin = 0;         ///< distance at which springs begin, m; at most half a voxel
-  /// The area from which on a contact has its whole stiffness, m². A smaller contact has a part of
-  /// the stiffness in proportion to its area. 0 means (d / 160)², with the diagonal d of the
-  /// tool's box: 0.4 mm² for a human jaw.
+  double margin = 0;         ///< springs begin at this distance, m; at most half a voxel
+  /// A contact of this area or more has its whole stiffness, m². A smaller contact has a part of
+  /// the stiffness in proportion to its area. 0 means (d / 160)², with the diagonal d of the tool's
+  /// box: 0.4 mm² for a human jaw.
   double full_area = 0;
   bool allow_breaking = false;  ///< a wall may break at less force than the coupling exerts
 };
