@@ -186,8 +186,7 @@ struct ContactSettings {
 
 /// `friction`: surfaces in contact stick, then slide. It is a part of `contact`.
 struct FrictionSettings {
-  double coefficient =
-      0.3;  ///< of friction: the largest tangential force divided by the normal force
+  double coefficient = 0.3;  ///< a contact slides at this ratio of tangential to normal force
 };
 
 /// `springs`: springs at pairs of voxels push the surfaces apart. They give way under load. Beyond
