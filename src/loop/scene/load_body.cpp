@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <utility>
 
 #include "ist/base/error.h"
@@ -17,6 +19,19 @@ void require_unit(const LoadedBody& body, LengthUnit unit, const Scene& scene) {
   fail_at(scene, "unit",
           fmt::format("{} is in {}: write this unit, or convert the mesh to the scene's unit",
                       body.name, to_string(unit)));
+}
+
+double diagonal_of(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
+  return std::sqrt(box.sizes().squaredNorm());
+}
+
+double diagonal_of(const SphereTree& tree) {
+  Eigen::AlignedBox3d centres;
+  for (const Eigen::Vector3d& centre : tree.leaf_centres()) centres.extend(centre);
+  const Eigen::Vector3d sizes = centres.sizes().array() + tree.voxel_size();
+  return std::sqrt(sizes.squaredNorm());
 }
 
 void take_tree(LoadedBody& body, const std::filesystem::path& file, const Scene& scene) {
@@ -35,6 +50,8 @@ void take_tree(LoadedBody& body, const std::filesystem::path& file, const Scene&
   if (body.tree->triangles()) {
     body.mesh = std::make_unique<TriangleMesh>(parts_of(*body.tree).triangles->mesh);
   }
+  body.voxel_size = body.tree->voxel_size();
+  body.diagonal = body.mesh ? diagonal_of(*body.mesh) : diagonal_of(*body.tree);
 }
 
 void take_mesh(LoadedBody& body, TriangleMesh mesh, double voxel_size, const Scene& scene) {
@@ -44,6 +61,8 @@ void take_mesh(LoadedBody& body, TriangleMesh mesh, double voxel_size, const Sce
   }
   require_unit(body, mesh.unit, scene);
   body.frame = mesh.frame;
+  body.voxel_size = voxel_size;
+  body.diagonal = diagonal_of(mesh);
   body.mesh = std::make_unique<TriangleMesh>(std::move(mesh));
   body.outside_is_known = orient_outward(*body.mesh).orientation == Orientation::kOutward;
   body.origin = lattice_of(*body.mesh, voxel_size).origin();

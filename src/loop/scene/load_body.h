@@ -21,6 +21,8 @@ struct LoadedBody {
   bool outside_is_known = false;                     ///< from its triangles, or trusted
   PatientFrame frame = PatientFrame::kUnknown;       ///< as its file says it
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< centre of the grid, mesh coordinates
+  double diagonal = 0;    ///< of its box, mesh units; without a mesh of the box round its voxels
+  double voxel_size = 0;  ///< mesh units
 
   /// Whether it is fixed at some time of a run.
   [[nodiscard]] bool may_be_fixed() const { return !held || named->attachable; }

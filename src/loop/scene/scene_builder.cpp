@@ -136,6 +136,7 @@ class Builder {
   void choose_effects();
   void warn_of_unknown_outside(const LoadedBody& body);
   void refuse_to_take(bool outside_is_known) const;
+  void check_springs();
   void place_bodies();
   void place_tool();
   void build_simulation();
@@ -175,7 +176,7 @@ void Builder::warn_of_unknown_outside(const LoadedBody& body) {
   if (body.outside_is_known) return;
   const bool own = std::any_of(own_.begin(), own_.end(),
                                [](const auto& effect) { return needs_outside(effect->needs()); });
-  if (!scene_.contact && !scene_.proximity && !own) return;
+  if (!scene_.contact && !scene_.springs && !scene_.proximity && !own) return;
   built_.warnings.push_back(
       fmt::format("{}: the mesh is not closed and consistent, so its outside is not known and no "
                   "contact is felt: repair it, or say trust_normals = true in [{}]",
@@ -189,11 +190,14 @@ void Builder::choose_effects() {
     warn_of_unknown_outside(body);
     outside_is_known = outside_is_known && body.outside_is_known;
   }
-  effects_ = make_effects(scene_, home_, outside_is_known, pairs_.size());
+  effects_ = make_effects(scene_, home_, outside_is_known);
   for (auto& effect : own_) {
     if (outside_is_known || !needs_outside(effect->needs())) effects_.push_back(std::move(effect));
   }
   needs_ = needs_of(effects_);
+  // CONTACT SEAM: the constraint has no force yet. Bodies are voxelised as springs need them.
+  if (scene_.contact && outside_is_known) needs_ |= {.normals = true, .depth = true};
+  if (scene_.springs && outside_is_known) check_springs();
   if (!needs_.contacts()) refuse_to_take(outside_is_known);
 }
 
@@ -205,13 +209,46 @@ void Builder::refuse_to_take(bool outside_is_known) const {
       fail_at(
           scene_, path_of_body(key, i, bodies.size()) + ".attachable",
           fmt::format("whether anything touches {} is not known: {}", bodies[i].name,
-                      outside_is_known ? "add the table [effects.contact]"
+                      outside_is_known ? "add the table [effects.contact] or [effects.springs]"
                                        : "give closed meshes, or set trust_normals = true where "
                                          "the normals of one that is open point outward"));
     }
   };
   refuse("fixed", scene_.fixed);
   refuse("held", scene_.held);
+}
+
+// Refuses a margin that is wider than half a voxel, and a wall that breaks at less force than the
+// coupling exerts.
+void Builder::check_springs() {
+  const SpringsSettings& springs = *scene_.springs;
+  const auto voxel_of = [&](const HandPair& pair) {
+    return 0.5 * (bodies_[pair.fixed].voxel_size + bodies_[pair.held].voxel_size) * scene_.unit;
+  };
+  const HandPair& least = *std::min_element(
+      pairs_.begin(), pairs_.end(),
+      [&](const HandPair& a, const HandPair& b) { return voxel_of(a) < voxel_of(b); });
+  const double voxel = voxel_of(least);
+  if (springs.margin > 0.5 * voxel) {
+    fail_at(scene_, "effects.springs.margin",
+            fmt::format("it is {:.4g}, more than half a voxel, {:.4g}: lower it, or give larger "
+                        "voxels",
+                        springs.margin / scene_.unit, 0.5 * voxel / scene_.unit));
+  }
+  const double force = breaking_force(springs, voxel);
+  if (force >= scene_.coupling.max_force) return;
+  const std::string breaks = fmt::format(
+      "the wall of springs between {} and {} breaks at {:.3g} N, and the coupling exerts up to "
+      "{:.3g} N",
+      bodies_[least.fixed].named->name, bodies_[least.held].named->name, force,
+      scene_.coupling.max_force);
+  if (!springs.allow_breaking) {
+    fail_at(scene_, "effects.springs.stiffness",
+            fmt::format("{}: give larger voxels, a higher stiffness or a lower coupling.max_force, "
+                        "or say allow_breaking = true in [effects.springs]",
+                        breaks));
+  }
+  built_.warnings.push_back(fmt::format("{}: beyond that force the tool passes through", breaks));
 }
 
 // Puts the bodies at their places, and bounds the tool's step by the least voxel, so that nothing
@@ -346,6 +383,7 @@ void Builder::build_simulation() {
                                 .max_step = max_step_,
                                 .start = start_,
                                 .dt = period_};
+  // CONTACT SEAM: scene_.contact and scene_.friction go into the parts here.
   build_queries({scene_, bodies_, built_.trees, placed_, pairs_, period_}, needs_,
                 PlanReach(plan(), start_), max_memory_, notes_, parts);
   for (const SceneChange& change : scene_.changes) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "loop/haptics/effects/proximity_effect.h"
 #include "loop/scene/scene_lines.h"
 
 namespace ist {
@@ -25,22 +26,40 @@ struct PlannedQuery {
   ToolContactOptions options;
 };
 
+// The part of the tool's diagonal whose square is the default of SpringsSettings::full_area.
+constexpr double kFullWidth = 1.0 / 160;
+
+// The options of springs, whose lengths are in voxels.
+ToolContactOptions options_of(const PlacedBodies& of, const SphereTree& fixed,
+                              const SphereTree& held) {
+  const SpringsSettings springs = of.scene.springs.value_or(SpringsSettings());
+  const double unit = of.scene.unit;
+  const double width = kFullWidth * of.bodies[of.scene.fixed.size()].diagonal;
+  const double area =
+      springs.full_area > 0 ? springs.full_area / (unit * unit) : width * width;  // mesh units²
+  const double size = 0.5 * (fixed.voxel_size() + held.voxel_size());
+  return {.margin = springs.margin / (unit * size),
+          .full_area = area / (fixed.voxel_size() * held.voxel_size())};
+}
+
 PlannedQuery contact_query(const PlacedBodies& of, const HandPair& pair) {
   const SphereTree &fixed = *of.trees[pair.fixed].contact, &held = *of.trees[pair.held].contact;
   const SpherePolicy policy =
       std::min(of.bodies[pair.fixed].named->spheres.value_or(fixed.tightest()),
                of.bodies[pair.held].named->spheres.value_or(held.tightest()));
-  return {fixed, held,
-          ToolContactOptions{
-              .policy = policy,
-              .margin = of.scene.contact.value_or(ContactSettings()).margin,
-              .workers = of.scene.workers,
-              .period = std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * of.period))}};
+  ToolContactOptions options = options_of(of, fixed, held);
+  options.policy = policy;
+  options.workers = of.scene.workers;
+  options.period = std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * of.period));
+  return {fixed, held, options};
 }
 
 PlannedQuery proximity_query(const PlacedBodies& of, const HandPair& pair) {
   return {*of.trees[pair.fixed].near, *of.trees[pair.held].coarse,
-          ToolContactOptions{.policy = SpherePolicy::kTight, .margin = 2, .reach = 0}};
+          ToolContactOptions{.policy = SpherePolicy::kTight,
+                             .margin = 2,
+                             .full_area = ProximityEffect::kFullPairs,
+                             .reach = 0}};
 }
 
 // Adds up what queries will reserve, before any of them is made, and refuses the one too many.

@@ -103,9 +103,9 @@ struct ScriptSettings {
   std::vector<Waypoint> plan = {};  ///< at least one waypoint
 };
 
-/// The content of a scene file, or a scene made by a program. SI but for the bodies. Poses of the
-/// tool are motions of the held bodies from their places in the scene: a turn about the centre of
-/// the first one's root cube, then a translation along scene axes.
+/// The content of a scene file, or a scene made by a program. SI but for the bodies and `contact`.
+/// Poses of the tool are motions of the held bodies from their places in the scene: a turn about
+/// the centre of the first one's root cube, then a translation along scene axes.
 struct Scene {
   std::filesystem::path file = {};                       ///< for messages
   std::string text = {};                                 ///< of `file`; empty without a file
@@ -125,9 +125,10 @@ struct Scene {
   CouplingSettings coupling = {};  ///< between device and tool
   SafetySettings safety = {};      ///< limits of the wrench on the hand
 
-  std::optional<ContactSettings> contact = {};      ///< absent: no contact forces
-  std::optional<FrictionSettings> friction = {};    ///< acts at contacts, as damping does
-  std::optional<DampingSettings> damping = {};      ///< absent: no damping
+  std::optional<ContactSettings> contact = {};      ///< absent: nothing keeps the bodies apart
+  std::optional<SpringsSettings> springs = {};      ///< in place of `contact`, not beside it
+  std::optional<FrictionSettings> friction = {};    ///< needs `contact`
+  std::optional<DampingSettings> damping = {};      ///< needs `contact` or `springs`
   std::optional<ProximitySettings> proximity = {};  ///< absent: the tool is not slowed
   std::optional<SceneGravity> gravity = {};         ///< absent: the held body weighs nothing
   std::optional<SnapSettings> snap = {};            ///< its pose is a motion
