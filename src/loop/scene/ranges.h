@@ -70,8 +70,7 @@ inline constexpr NumberKey<SafetySettings> kSafetyKeys[] = {
     {"soft_start", &SafetySettings::soft_start, kSoftStart}};
 inline constexpr NumberKey<ContactSettings> kContactKeys[] = {
     {"skin", &ContactSettings::skin, kLengthOrNone},
-    {"trust", &ContactSettings::trust, kLengthOrNone},
-    {"slack", &ContactSettings::slack, kLengthOrNone}};
+    {"trust", &ContactSettings::trust, kLengthOrNone}};
 inline constexpr NumberKey<FrictionSettings> kFrictionKeys[] = {
     {"coefficient", &FrictionSettings::coefficient, kFriction}};
 inline constexpr NumberKey<SnapSettings> kSnapKeys[] = {

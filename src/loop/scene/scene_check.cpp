@@ -49,10 +49,6 @@ class Check {
           fmt::format("{} follows a script, so the hand cannot take it: take out one of the two",
                       body.name));
     }
-
-    if (std::holds_alternative<BuiltInShape>(body.source) && !body.voxel_size) {
-      fail_at(scene_, table + ".voxel_size", "a shape has no voxels: give their size");
-    }
     if (!Placement::from(Placement{body.rotation}.isometry()) || !body.translation.allFinite()) {
       fail_at(scene_, table + ".quaternion",
               fmt::format("the pose of the body is no rigid motion: {}",

@@ -177,10 +177,9 @@ class IST_API Effect {
 /// `contact`: the tool never intersects a fixed body. Lengths are in the scene's unit. A length of
 /// 0 means its default, a fraction of the diagonal of the tool's box.
 struct ContactSettings {
-  double skin = 0;   ///< gap that a contact keeps; by default 1/20,000 of the diagonal
+  double skin = 0;   ///< gap that a contact keeps; by default 1/32,000 of the diagonal
   double trust = 0;  ///< longest way of the held surface in a step near a fixed body; by default
-                     ///< 1/5,000 of the diagonal
-  double slack = 0;  ///< near pairs are kept for so long a way; by default 3/10,000 of the diagonal
+                     ///< 1/8,000 of the diagonal
   int steps = 3;     ///< of a tick, at most; 1 to 10
 };
 
@@ -195,7 +194,7 @@ struct SpringsSettings {
   double stiffness = 40000;  ///< of a whole contact, N/m, whatever the voxel size
   double margin = 0;         ///< springs begin at this distance, m; at most half a voxel
   /// A contact of this area or more has its whole stiffness, m². A smaller contact has a part of
-  /// the stiffness in proportion to its area. 0 means (d / 160)², with the diagonal d of the tool's
+  /// the stiffness in proportion to its area. 0 means (d / 260)², with the diagonal d of the tool's
   /// box: 0.4 mm² for a human jaw.
   double full_area = 0;
   bool allow_breaking = false;  ///< a wall may break at less force than the coupling exerts
