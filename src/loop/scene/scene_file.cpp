@@ -16,7 +16,7 @@ ContactSettings read_contact(TableReader contact) {
   for (const char* key : {"stiffness", "margin"}) {
     contact.refuse_old(key, "belongs to [effects.springs]",
                        "write that table in place of this one, or take the key out: contact bears "
-                       "any force, and needs no voxels");
+                       "any force");
   }
   ContactSettings settings = read_numbers(contact, kContactKeys);
   settings.steps = static_cast<int>(
