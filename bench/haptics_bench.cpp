@@ -15,7 +15,7 @@ namespace {
 
 using Names = std::set<std::string>;
 
-const Names kAll{"contact", "friction", "damping", "proximity", "gravity", "snap"};
+const Names kAll{"springs", "damping", "proximity", "gravity", "snap"};
 
 // The built-in jaws, whatever others there are; closed by 4.5 mm within 0.3 s and then held there.
 Scene pressed_jaws(double voxel_size, const Names& effects) {
@@ -34,9 +34,8 @@ Scene pressed_jaws(double voxel_size, const Names& effects) {
                                 {waypoint(0, 0), waypoint(0.3, 4.5), waypoint(1e6, 4.5)}};
   scene.coupling = {1000, 0.5, 1, 5e-4, 5, 0.2};
   scene.safety = {8, 0.3, 500, 20, 0.1};
-  if (effects.contains("contact")) scene.contact = ContactSettings{2000, 0.25};
-  if (effects.contains("friction")) scene.friction = FrictionSettings{0.3, 0.2, 1000};
-  if (effects.contains("damping")) scene.damping = DampingSettings{1};
+  if (effects.contains("springs")) scene.springs = SpringsSettings{};
+  if (effects.contains("damping")) scene.damping = DampingSettings{};
   if (effects.contains("proximity")) scene.proximity = ProximitySettings{1e-3, 2};
   if (effects.contains("gravity")) scene.gravity = SceneGravity{0.05, std::nullopt, {0, 0, -9.81}};
   if (effects.contains("snap")) {
@@ -70,7 +69,7 @@ void ticks(benchmark::State& state, double voxel_size, const Names& effects) {
     turn();
     force = i < kUntilPressed / 2 ? 0 : std::max(force, tick.wrench.norm());
   }
-  if (effects.contains("contact") && force < 0.1) {
+  if (effects.contains("springs") && force < 0.1) {
     state.SkipWithError("the jaws are not pressed together");
     return;
   }
@@ -93,10 +92,10 @@ const int kRegistered = [] {
   for (const double voxel_size : {1.0, 0.4}) {
     add(voxel_size, "no_effects", {});
     for (const std::string& effect : kAll) {
-      // These two act at contacts, and are no effects without.
-      const bool needs_contact = effect == "friction" || effect == "damping";
-      add(voxel_size, needs_contact ? "contact+" + effect : effect,
-          needs_contact ? Names{"contact", effect} : Names{effect});
+      // Damping acts at contacts, and is no effect without.
+      const bool needs_springs = effect == "damping";
+      add(voxel_size, needs_springs ? "springs+" + effect : effect,
+          needs_springs ? Names{"springs", effect} : Names{effect});
     }
     add(voxel_size, "all", kAll);
   }

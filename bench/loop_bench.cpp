@@ -101,12 +101,20 @@ std::string joined(const std::vector<std::string>& notes) {
   return fmt::format("{}{}", pair_name(), notes.empty() ? "" : "; " + notes.front());
 }
 
+// A scene with springs in place of contact: leaf pairs are counted.
+Scene with_springs(Scene scene) {
+  scene.contact.reset();
+  scene.friction.reset();
+  scene.springs = SpringsSettings{.allow_breaking = true};
+  return scene;
+}
+
 // The jaws of the scene of docs/haptics.md; or, where their files are missing, those that need
 // none.
 Scene scene_of_jaws() {
   const bool real = std::string(pair_name()) == "human";
   if (real) setenv("IST_DATA_DIR", data_file("").parent_path().c_str(), 0);
-  return read_scene(scene_file(real ? "human_pair.toml" : "jaws.toml"));
+  return with_springs(read_scene(scene_file(real ? "human_pair.toml" : "jaws.toml")));
 }
 
 // They close in the first third, and are held closed for the rest.
@@ -209,7 +217,8 @@ void bare_sleep(benchmark::State& state, bool real_time, bool noisy) {
 // query with the held one.
 class SplintPairs {
  public:
-  SplintPairs() : scene_(read_scene(scene_file("splint.toml"))), built_(build_scene(scene_)) {
+  SplintPairs()
+      : scene_(with_springs(read_scene(scene_file("splint.toml")))), built_(build_scene(scene_)) {
     std::vector<BodyPart> parts;
     for (std::size_t i = 0; i < built_.trees.size(); ++i) {
       const bool held = i == scene_.fixed.size();

@@ -2,7 +2,7 @@
 //
 //   tick_instructions SCENE TICKS                of a scene file
 //   tick_instructions --by-hand EFFECTS TICKS    of parts that a program puts together by itself,
-//                                                with effects as contact,gravity, or none
+//                                                with effects as springs,gravity, or none
 //
 // Nothing but a tick happens in count_tick(), where --toggle-collect begins and ends.
 #include <fmt/format.h>
@@ -27,12 +27,11 @@
 #include "ist/tree/sphere_tree.h"
 #include "ist/voxel/voxelizer.h"
 #include "loop/haptics/devices/hand_device.h"
-#include "loop/haptics/effects/contact_effect.h"
 #include "loop/haptics/effects/damping_effect.h"
-#include "loop/haptics/effects/friction_effect.h"
 #include "loop/haptics/effects/gravity_effect.h"
 #include "loop/haptics/effects/proximity_effect.h"
 #include "loop/haptics/effects/snap_effect.h"
+#include "loop/haptics/effects/springs_effect.h"
 #include "loop/haptics/simulation_parts.h"
 #include "loop/haptics/tool.h"
 
@@ -49,7 +48,7 @@ struct BallOnBox {
 
 constexpr double kUnit = 1e-3;
 constexpr double kBallVoxel = 0.5, kBoxVoxel = 1;
-constexpr double kMargin = 0.25;
+constexpr double kFullArea = 0.01;  // of the springs, mesh units²
 constexpr double kNear = 2;
 
 TriangleMesh outward(TriangleMesh mesh) {
@@ -71,16 +70,11 @@ std::vector<Waypoint> plan_from(const Placement& start) {
 std::vector<std::unique_ptr<Effect>> effects_of(const std::set<std::string>& names,
                                                 const Placement& start) {
   std::vector<std::unique_ptr<Effect>> effects;
-  if (names.contains("contact")) {
-    auto contact = std::make_unique<ContactEffect>(ContactSettings{2000, kMargin});
-    const ContactEffect& load = *contact;
-    effects.push_back(std::move(contact));
-    if (names.contains("friction")) {
-      effects.push_back(std::make_unique<FrictionEffect>(FrictionSettings{0.4, 0.2, 1000}, load));
-    }
-    if (names.contains("damping")) {
-      effects.push_back(std::make_unique<DampingEffect>(DampingSettings{1}));
-    }
+  if (names.contains("springs")) {
+    effects.push_back(std::make_unique<SpringsEffect>(SpringsSettings{.stiffness = 20000}));
+  }
+  if (names.contains("damping")) {
+    effects.push_back(std::make_unique<DampingEffect>(DampingSettings{10}));
   }
   if (names.contains("proximity")) {
     effects.push_back(std::make_unique<ProximityEffect>(ProximitySettings{kUnit * kNear, 2}));
@@ -113,12 +107,15 @@ BallOnBox make_ball_on_box(const std::set<std::string>& effects) {
                                 .dt = 1e-3};
   std::unique_ptr<ToolContactQuery> contacts, proximity;
   double radius = 0;
-  if (effects.contains("contact")) {
+  if (effects.contains("springs")) {
     made.box = tree_of(box, {.voxel_size = kBoxVoxel, .spheres = SpherePolicy::kSlab});
     made.ball = tree_of(ball, {.voxel_size = kBallVoxel, .spheres = SpherePolicy::kSlab});
     contacts = std::make_unique<ToolContactQuery>(
         *made.box, *made.ball, frames,
-        ToolContactOptions{.policy = SpherePolicy::kSlab, .margin = kMargin});
+        ToolContactOptions{
+            .policy = SpherePolicy::kSlab,
+            .margin = 0,
+            .full_area = kUnit * kUnit * kFullArea / (kUnit * kUnit) / (kBoxVoxel * kBallVoxel)});
     radius = kUnit * surface_radius(*made.ball);
     parts.max_step = kUnit * kBallVoxel;
   }
@@ -130,7 +127,10 @@ BallOnBox make_ball_on_box(const std::set<std::string>& effects) {
     made.near_ball = tree_of(ball, {.voxel_size = voxel, .spheres = SpherePolicy::kTight});
     proximity = std::make_unique<ToolContactQuery>(
         *made.near_box, *made.near_ball, frames,
-        ToolContactOptions{.policy = SpherePolicy::kTight, .margin = 2, .reach = 0});
+        ToolContactOptions{.policy = SpherePolicy::kTight,
+                           .margin = 2,
+                           .full_area = ProximityEffect::kFullPairs,
+                           .reach = 0});
   }
   detail::add_two_bodies(parts, frames, radius, std::move(contacts), std::move(proximity));
   made.device = std::make_unique<HandDevice>(HandSettings{.plan = plan_from(start)});

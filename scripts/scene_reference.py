@@ -65,7 +65,7 @@ def written(page, keys):
             rows.append(path)
             key = keys[path]
             default = key["default"] or ("–" if key["optional"] else "mandatory")
-            unit = "scene's unit" if key["unit"] == "in the scene's unit" else key["unit"]
+            unit = key["unit"].removeprefix("in the ")
             cells = [f"`{found[1]}`", found[2], readable(key["values"]).replace("|", "\\|"), unit, readable(default)]
             lines[at] = "| " + " | ".join(cells) + " |"
     wrong += [f"{path} has no row" for path in keys if path not in rows]

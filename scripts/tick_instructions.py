@@ -33,9 +33,8 @@ plan = [
 ]
 """
 EFFECTS = {
-    "contact": "[effects.contact]\nstiffness = 2000\n",
-    "friction": "[effects.friction]\nstatic = 0.4\n",
-    "damping": "[effects.damping]\ndamping = 1\n",
+    "springs": "[effects.springs]\nstiffness = 20000\nfull_area = 0.01\n",
+    "damping": "[effects.damping]\ndamping = 10\n",
     "proximity": "[effects.proximity]\ndistance = 2\n",
     "gravity": "[effects.gravity]\nmass = 0.05\n",
     "snap": "[effects.snap]\nmove = [2, 0, -2]\nradius = 4\n",
@@ -65,7 +64,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         scene = pathlib.Path(name, "scene.toml")
         scene.write_text(BODIES + "".join(EFFECTS.values()))
-        # The contact, which is first, goes last: others act at contacts.
+        # The springs are first, and go last: damping acts at contacts.
         for effect in [None, *reversed(EFFECTS)]:
             if effect is not None:
                 left.remove(effect)

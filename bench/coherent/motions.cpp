@@ -105,11 +105,15 @@ std::vector<double> steps(const Poses& poses) {
   return all;
 }
 
+// The shipped scene with springs in place of contact, since springs have leaf pairs.
 Scene scene_of_jaws(double voxel_size) {
   const bool real = std::string(pair_name()) == "human";
   if (real) setenv("IST_DATA_DIR", data_file("").parent_path().c_str(), 0);
   Scene scene = read_scene(scene_file(real ? "human_pair.toml" : "jaws.toml"));
   scene.workers = 1;
+  scene.contact.reset();
+  scene.friction.reset();
+  scene.springs = SpringsSettings{.allow_breaking = true};
   scene.fixed.front().voxel_size = scene.held.front().voxel_size = voxel_size;
   return scene;
 }

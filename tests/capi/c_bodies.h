@@ -63,8 +63,7 @@ voxel_size = 0.5
 translation = [0, 0, 4.5]
 [device]
 kind = "null"
-[effects.contact]
-stiffness = 1000
+[effects.springs]
 )";
 
 /// A pose column by column: a shift.

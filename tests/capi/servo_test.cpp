@@ -37,9 +37,8 @@ translation = [0, 0, 8]
 kind = "hand"
 damping = 3
 plan = [{ time = 0, move = [0, 0, 0] }, { time = 1, move = [0, 0, -4] }]
-[effects.contact]
-stiffness = 1000
-[effects.friction]
+[effects.springs]
+stiffness = 20000
 )";
 }
 

@@ -267,7 +267,7 @@ TEST_F(StatedUnits, OfTreesAreTakenBySweepsAndScenes) {
       "scene.toml",
       "unit = \"mm\"\n[fixed]\nfile = \"mm.ist\"\n[held]\nfile = \"inch.ist\"\n[device]\n"
       "kind = \"hand\"\nplan = [{ time = 0, move = [0, 0, 50] }, { time = 0.01, move = [0, 0, 49] "
-      "}]\n[effects.contact]\nstiffness = 2000\n");
+      "}]\n[effects.contact]\n");
   const CommandResult run = ist({"run", scene});
   EXPECT_EQ(run.exit_code, 3);
   EXPECT_TRUE(says(run.err, inch + " is in inch: write this unit")) << run.err;

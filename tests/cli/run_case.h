@@ -55,7 +55,7 @@ class RunCase : public CliTest {
     std::string text = file_content(shipped("press"));
     text = replaced(replaced(text, "time = 1,", "time = 0.2,"), "time = 3,", "time = 0.4,");
     return write("all.toml", replaced(text, "time = 4,", "time = 0.6,") +
-                                 "\n[effects.friction]\n[effects.damping]\n[effects.proximity]\n"
+                                 "\n[effects.damping]\n[effects.proximity]\n"
                                  "distance = 2\n[effects.gravity]\nmass = 0.05\n[effects.snap]\n"
                                  "move = [0, 0, -1]\nradius = 3\n");
   }

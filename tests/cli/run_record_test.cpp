@@ -246,7 +246,7 @@ attach = "piece"
 [[changes]]
 time = 0.03
 release = "piece"
-[effects.contact]
+[effects.springs]
 )");
   const std::string first = path("first.jsonl"), again = path("again.jsonl");
   const CommandResult result = ist_well(run(scene, {"--unpaced", "--record", first, "--json"}));

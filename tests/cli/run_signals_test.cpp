@@ -29,7 +29,7 @@ class RunSignals : public RunCase {
                                     "unit = \"mm\"\n[fixed]\nshape = \"box\"\nsize = [8, 8, 4]\n"
                                     "voxel_size = 1\n[held]\nshape = \"box\"\nsize = [4, 4, 4]\n"
                                     "voxel_size = 1\ntranslation = [0, 0, 5]\n"
-                                    "[device]\nkind = \"null\"\n[effects.contact]\n");
+                                    "[device]\nkind = \"null\"\n[effects.springs]\n");
     more.insert(more.end(), {"--seconds", "100000", "--json", "--record", record});
     return run(scene, more);
   }

@@ -28,7 +28,7 @@ TEST_F(Run, TheShippedScenesAreSound) {
     EXPECT_EQ(lines[0]["missed"], 0);
     EXPECT_EQ(lines[0]["faults"], 0);
     EXPECT_EQ(lines[0]["rate"], 1000.0);
-    EXPECT_GT(lines[0]["effects"]["contact"], 0.0);
+    EXPECT_GT(lines[0]["effects"][scene == "press" ? "springs" : "damping"], 0.0);
     for (const char* times : {"late_microseconds", "microseconds", "cpu_microseconds"}) {
       double last = 0;
       for (const char* quantile : {"p50", "p99", "p99.9", "p99.99", "max"}) {
@@ -43,7 +43,7 @@ TEST_F(Run, TheShippedScenesAreSound) {
 TEST_F(Run, PrintsWhatTicksTook) {
   const CommandResult result = ist_well(run(boxes(), {"--unpaced", "--seconds", "0.3"}));
   for (const char* part : {"300 ticks of 1000 µs: 0 deadlines missed, 0 answers incomplete",
-                           "p99.99", "began late", "processor", "effects, a tick: contact "}) {
+                           "p99.99", "began late", "processor", "effects, a tick: damping "}) {
     EXPECT_TRUE(says(result.out, part));
   }
   EXPECT_TRUE(result.err.empty()) << result.err;
@@ -85,9 +85,28 @@ TEST_F(Run, ABadSceneIsABadInput) {
 
 TEST_F(Run, WarnsOfACouplingThatIsClamped) {
   const CommandResult result = ist_well(
-      run(altered("press", "[effects.contact]", "[coupling]\nstiffness = 9e5\n[effects.contact]"),
+      run(altered("press", "[effects.springs]", "[coupling]\nstiffness = 9e5\n[effects.springs]"),
           {"--check"}));
   EXPECT_TRUE(says(result.err, "coupling.stiffness of 9e+05 N/m is too near"));
+}
+
+// Springs of 10,000 N/m at voxels of 0.5 mm bear 2.5 N. The coupling exerts 5 N.
+TEST_F(Run, SaysTheForceAtWhichSpringsBreak) {
+  const std::string breaks = "breaks at 2.5 N, and the coupling exerts up to 5 N";
+  const std::string weak = altered("press", "stiffness = 40000", "stiffness = 10000");
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"--check"}, {"--explain"}, {"--unpaced"}}) {
+    const CommandResult refused = ist(run(weak, more));
+    EXPECT_EQ(refused.exit_code, 3);
+    EXPECT_TRUE(says(refused.err, "press.toml:26: "));
+    EXPECT_TRUE(says(refused.err, breaks));
+    EXPECT_TRUE(says(refused.err, "allow_breaking = true"));
+  }
+  const std::string allowed =
+      altered("press", "stiffness = 40000", "stiffness = 10000\nallow_breaking = true");
+  for (const std::string flag : {"--check", "--explain"}) {
+    EXPECT_TRUE(says(ist_well(run(allowed, {flag})).err, breaks));
+  }
 }
 
 // Its clock stands still for 50 ms or more: no machine keeps the 50 deadlines meanwhile.

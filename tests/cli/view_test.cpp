@@ -66,8 +66,7 @@ translation = [0, 0, 4]
 [device]
 kind = "hand"
 plan = [{ time = 0, move = [0, 0, 0] }]
-[effects.contact]
-stiffness = 2000
+[effects.springs]
 )");
   }
 

@@ -49,10 +49,9 @@ void check(const Scene& scene) {
   require(scene.coupling.max_force > 0 && scene.coupling.max_force <= scene.safety.max_force &&
               scene.coupling.max_torque > 0 && scene.coupling.max_torque <= scene.safety.max_torque,
           "the coupling's limits are none");
-  require(scene.contact || !(scene.friction || scene.damping), "an effect has no contacts");
-  require(
-      !scene.friction || scene.friction->dynamic_coefficient <= scene.friction->static_coefficient,
-      "friction grows with sliding");
+  require(!scene.contact || !scene.springs, "contact and springs stand beside each other");
+  require(scene.contact || !scene.friction, "friction has no contact");
+  require(scene.contact || scene.springs || !scene.damping, "damping has no contacts");
   require(!scene.gravity || (scene.gravity->mass > 0 && scene.gravity->acceleration.allFinite()),
           "gravity is none");
   require(!scene.snap || is_rotation(scene.snap->pose.rotation), "a snap pose is none");

@@ -1,7 +1,7 @@
 #include "haptics/haptic_cases.h"
 
 #include "ist/tree/sphere_tree.h"
-#include "loop/haptics/effects/contact_effect.h"
+#include "loop/haptics/effects/springs_effect.h"
 #include "loop/haptics/simulation_parts.h"
 #include "loop/haptics/tool.h"
 #include "support/shapes.h"
@@ -28,7 +28,7 @@ Simulation HapticBodies::simulation(std::unique_ptr<Effect> other) const {
       parts, frames, 1e-3 * surface_radius(*held_),
       std::make_unique<ToolContactQuery>(*fixed_, *held_, frames,
                                          ToolContactOptions{SpherePolicy::kSlab, 0.5}));
-  parts.effects.push_back(std::make_unique<ContactEffect>(ContactSettings{2000, 0.5}));
+  parts.effects.push_back(std::make_unique<SpringsEffect>(SpringsSettings{.stiffness = 20000}));
   if (other) parts.effects.push_back(std::move(other));
   return detail::simulation_from(std::move(parts));
 }

@@ -18,7 +18,7 @@ class HapticBodies {
         held_(std::make_unique<const SphereTree>(std::move(held))),
         touching_(touching) {}
 
-  /// With a contact effect of 2000 N/m, and one more if it is there, at 1 kHz, starting 1 mm apart.
+  /// With springs of 20,000 N/m, and one more effect if it is there, at 1 kHz, starting 1 mm apart.
   [[nodiscard]] Simulation simulation(std::unique_ptr<Effect> other = nullptr) const;
   /// The tool so far above where the surfaces meet, m.
   [[nodiscard]] Placement at(double height) const {

@@ -4,7 +4,7 @@
 
 #include "ist/mesh/mesh.h"
 #include "loop/haptics/effects/damping_effect.h"
-#include "loop/haptics/effects/friction_effect.h"
+#include "loop/haptics/effects/springs_effect.h"
 #include "loop/haptics/simulation_parts.h"
 #include "loop/haptics/tool.h"
 #include "support/data_dir.h"
@@ -59,11 +59,8 @@ Simulation HumanPair::simulation(const CouplingSettings& coupling) const {
       parts, frames_, 1e-3 * surface_radius(held_),
       std::make_unique<ToolContactQuery>(fixed_, held_, frames_,
                                          ToolContactOptions{SpherePolicy::kSlab, kMargin}));
-  auto contact = std::make_unique<ContactEffect>(ContactSettings{2000, kMargin});
-  const ContactEffect& load = *contact;
-  parts.effects.push_back(std::move(contact));
-  parts.effects.push_back(std::make_unique<FrictionEffect>(FrictionSettings{0.3, 0.2, 1000}, load));
-  parts.effects.push_back(std::make_unique<DampingEffect>(DampingSettings{1}));
+  parts.effects.push_back(std::make_unique<SpringsEffect>(SpringsSettings{.stiffness = 20000}));
+  parts.effects.push_back(std::make_unique<DampingEffect>(DampingSettings{10}));
   return detail::simulation_from(std::move(parts));
 }
 

@@ -35,7 +35,7 @@ class HumanPair {
                                 const Eigen::Vector3d& turn = {0, 0, 0}) const;
   /// Whether the surfaces of both meet, by triangles.
   [[nodiscard]] bool surfaces_meet(const Placement& tool);
-  /// Contact, friction and damping, from an open mouth.
+  /// Springs and damping, from an open mouth.
   [[nodiscard]] Simulation simulation(const CouplingSettings& coupling) const;
 
  private:

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "loop/haptics/coupling.h"
-#include "loop/haptics/effects/contact_effect.h"
+#include "loop/haptics/effects/springs_effect.h"
 
 namespace ist::test {
 namespace {
@@ -76,7 +76,7 @@ struct Bench {
     contacts.spring[2] = depth;
     contacts.count = 1;
     std::vector<std::unique_ptr<Effect>> contact;
-    contact.push_back(std::make_unique<ContactEffect>(ContactSettings{kContact, 0.5}));
+    contact.push_back(std::make_unique<SpringsEffect>(SpringsSettings{.stiffness = kContact}));
     effects = TimedEffects(std::move(contact));
   }
   std::optional<Vector6> move(const Tool& tool, double part = 1) {
@@ -101,7 +101,7 @@ TEST(Tool, StopsWhereCouplingAndContactAreInBalance) {
   const auto motion = bench.move(Tool(0, Tool::kNoLimit));
   ASSERT_TRUE(motion);
   // 1000 (-1e-3 - z) + 3000 (1e-4 - lead z) = 0
-  EXPECT_NEAR((*motion)[2], (-1 + 0.3) / (1000 + ContactEffect::kLead * 3000), 1e-12);
+  EXPECT_NEAR((*motion)[2], (-1 + 0.3) / (1000 + SpringsEffect::kLead * 3000), 1e-12);
   EXPECT_NEAR(motion->head<2>().norm() + motion->tail<3>().norm(), 0, 1e-15);
 }
 

@@ -5,7 +5,7 @@
 
 #include "ist/tree/sphere_tree.h"
 #include "loop/haptics/devices/hand_device.h"
-#include "loop/haptics/effects/contact_effect.h"
+#include "loop/haptics/effects/springs_effect.h"
 #include "loop/haptics/simulation_parts.h"
 #include "loop/haptics/tool.h"
 #include "support/shapes.h"
@@ -14,7 +14,7 @@ namespace ist::test {
 namespace {
 
 constexpr double kMillimetre = 1e-3;          // m
-constexpr double kStiffContact = 1e5;         // of one whole leaf pair, N/m
+constexpr double kStiffContact = 1e6;         // N/m
 constexpr double kDamping = 2;                // of the device where it is not pressed, N s/m
 constexpr double kAngularDamping = 2e-3;      // N m s/rad
 constexpr double kHold = 0.25, kLeave = 0.6;  // s
@@ -70,10 +70,12 @@ Simulation simulation_of(const Wall& wall, const PressSettings& settings) {
                                 .dt = 1 / settings.rate};
   detail::add_two_bodies(
       parts, frames, kMillimetre * surface_radius(*wall.held),
-      std::make_unique<ToolContactQuery>(*wall.fixed, *wall.held, frames,
-                                         ToolContactOptions{SpherePolicy::kSlab, 0.5}));
+      std::make_unique<ToolContactQuery>(
+          *wall.fixed, *wall.held, frames,
+          ToolContactOptions{
+              .policy = SpherePolicy::kSlab, .margin = wall.margin, .full_area = wall.full_area}));
   parts.effects.push_back(
-      std::make_unique<ContactEffect>(ContactSettings{wall.contact_stiffness, 0.5}));
+      std::make_unique<SpringsEffect>(SpringsSettings{.stiffness = wall.contact_stiffness}));
   return detail::simulation_from(std::move(parts));
 }
 
@@ -110,7 +112,9 @@ Wall tip_wall() {
           false,
           axis(2, -1),
           5e-3,
-          2000};
+          SpringsSettings().stiffness,
+          0,
+          12.0 / (160 * 160) / (0.5 * 0.5)};
 }
 
 PressResult press(const Wall& wall, const PressSettings& settings) {

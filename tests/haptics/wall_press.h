@@ -15,14 +15,16 @@ struct Wall {
   bool turns;
   Vector6 way;   ///< of unit length
   double reach;  ///< of the hand's plan along it, from the pose as made to within the wall
-  double contact_stiffness;  ///< of one whole leaf pair, N/m
+  double contact_stiffness;  ///< of the springs, N/m
+  double margin = 0.5;       ///< of the springs, voxels
+  double full_area = 10;     ///< of the springs, leaf pairs
 };
 /// A block over a slab, 1 mm apart, stiffer than any coupling: it stops a push along -z.
 [[nodiscard]] Wall slab_wall();
 /// A pair of balls, one over and one under a slab: it stops a turn about y and nothing else.
 [[nodiscard]] Wall stop_wall();
-/// A ball of two voxels over a slab, with the stiffness that scenes have where they say nothing:
-/// where it meets the slab, leaf pairs come and gain weight within a fifth of a voxel.
+/// A ball of two voxels over a slab, with the springs of a scene that names no number. Where they
+/// meet, leaf pairs come and gain weight within a fifth of a voxel.
 [[nodiscard]] Wall tip_wall();
 
 struct PressSettings {

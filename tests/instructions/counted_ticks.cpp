@@ -16,14 +16,13 @@ Scene ball_on_box() {
   Scene scene{.unit = 1e-3};
   scene.fixed = {box_body("box", {-20, -20, -10}, {20, 20, 0})};
   scene.held = {ball_body("ball", {0, 0, 6}, 5)};
-  scene.contact = ContactSettings{};
+  scene.springs = SpringsSettings{};
   scene.device = NullSettings{kDeviceUnderTest};
   return scene;
 }
 
 Scene with_every_effect() {
   Scene scene = ball_on_box();
-  scene.friction = FrictionSettings{};
   scene.damping = DampingSettings{};
   scene.proximity = ProximitySettings{.distance = 2e-3};
   scene.gravity = SceneGravity{.mass = 0.05};
@@ -61,7 +60,7 @@ void count_ticks_of(const std::string& name, const Scene& scene) {
 }  // namespace
 
 void count_ticks() {
-  count_ticks_of("ticks/contact", ball_on_box());
+  count_ticks_of("ticks/springs", ball_on_box());
   count_ticks_of("ticks/every_effect", with_every_effect());
 }
 

@@ -22,8 +22,7 @@ voxel_size = 0.5
 translation = [0, 0, 4.5]
 [device]
 kind = "null"
-[effects.contact]
-stiffness = 1000
+[effects.springs]
 """
 
     def scene(self, text):

@@ -94,7 +94,7 @@ TEST_F(BadSceneTest, IsNoToml) {
       {"[held]", "[held", 7, "expected ']'", toml},
       {"]\n[effects", "\n[effects", 17, "could not determine value type", toml},
       added("[fixed]\n", 19, "cannot redefine existing table 'fixed'", toml),
-      added("[effects.contact]\n", 19, "cannot redefine existing table 'effects.contact'", toml),
+      added("[effects.springs]\n", 19, "cannot redefine existing table 'effects.springs'", toml),
   });
 }
 
@@ -138,11 +138,11 @@ TEST_F(BadSceneTest, HoldsWhatNobodyKnows) {
        "known here are kind"},
       {"time = 1,", "time = 1, trun = [1, 0, 0, 0],", 15, "'trun' in [device.plan.2] is unknown",
        "did you mean 'turn'?"},
-      {"stiffness = 2000", "stifness = 2000", 18, "'stifness' in [effects.contact] is unknown",
+      {"stiffness = 20000", "stifness = 20000", 18, "'stifness' in [effects.springs] is unknown",
        "did you mean 'stiffness'?"},
-      {"[effects.contact]", "[effects.contacts]", 17, "'contacts' in [effects] is unknown",
+      {"[effects.springs]", "[effects.contacts]", 17, "'contacts' in [effects] is unknown",
        "did you mean 'contact'?"},
-      {"[effects.contact]", "[effect.contact]", 17, "'effect' in the file is unknown",
+      {"[effects.springs]", "[effect.springs]", 17, "'effect' in the file is unknown",
        "did you mean 'effects'?"},
       added("[coupling]\nforce = 1\n", 20, "'force' in [coupling] is unknown", "max_force"),
       added("[safety]\nstiffness = 1\n", 20, "'stiffness' in [safety] is unknown", "max_force"),
@@ -204,14 +204,15 @@ TEST_F(BadSceneTest, HasValuesOfTheWrongKind) {
       {"\"hand\"", "\"foot\"", 12, "'kind' in [device] is \"foot\"", "\"hand\", \"script\""},
       {"[device]", "[[device]]", 11, "'device' in the file is an array of 1", "a table, [device]"},
       added("[[safety]]\n", 19, "'safety' in the file is an array of 1", "a table, [safety]"),
-      {"[effects.contact]\nstiffness", "[effects]\nstiffness", 18,
-       "'stiffness' in [effects] is unknown", "known here are contact, friction"},
-      {"[effects.contact]\nstiffness = 2000", "[effects]\ncontact = true", 18,
+      {"[effects.springs]\nstiffness", "[effects]\nstiffness", 18,
+       "'stiffness' in [effects] is unknown", "known here are contact, springs, friction"},
+      {"[effects.springs]\nstiffness = 20000", "[effects]\ncontact = true", 18,
        "'contact' in [effects] is true", "a table, [effects.contact]"},
   });
 }
 
 TEST_F(BadSceneTest, HasNumbersWithoutSense) {
+  const std::string springs(kSprings);
   expect_refused({
       {"rate = 1000", "rate = nan", 2, "'rate' in the file is nan", "from 1 to 10000 Hz"},
       {"rate = 1000", "rate = inf", 2, "'rate' in the file is inf", "from 1 to 10000 Hz"},
@@ -245,12 +246,20 @@ TEST_F(BadSceneTest, HasNumbersWithoutSense) {
        "N s/m"},
       {"kind = \"hand\"", "kind = \"hand\"\nresolution = -1", 13, "'resolution' in [device] is -1",
        "from 0"},
-      {"stiffness = 2000", "stiffness = -2000", 18, "'stiffness' in [effects.contact] is -2000",
+      {"stiffness = 20000", "stiffness = -2000", 18, "'stiffness' in [effects.springs] is -2000",
        "from 0"},
-      added("[effects.friction]\nstatic = -0.1\n", 20, "'static' in [effects.friction] is -0.1",
-            "from 0 to 10"),
-      added("[effects.friction]\nstatic = 0.3\ndynamic = 0.4\n", 21,
-            "'dynamic' is 0.4, more than 'static', which is 0.3", "lower it"),
+      {"stiffness = 20000", "margin = -1", 18, "'margin' in [effects.springs] is -1",
+       "in the scene's unit"},
+      {"stiffness = 20000", "full_area = -1", 18, "'full_area' in [effects.springs] is -1",
+       "in the scene's unit squared"},
+      {springs, "[effects.contact]\nskin = -1", 18, "'skin' in [effects.contact] is -1",
+       "in the scene's unit"},
+      {springs, "[effects.contact]\nsteps = 11", 18, "'steps' in [effects.contact] is 11",
+       "a whole number, 1 to 10"},
+      {springs, "[effects.contact]\nsteps = 0", 18, "'steps' in [effects.contact] is 0",
+       "a whole number, 1 to 10"},
+      {springs, "[effects.contact]\n[effects.friction]\ncoefficient = -0.1", 19,
+       "'coefficient' in [effects.friction] is -0.1", "from 0 to 10"},
       added("[effects.damping]\ndamping = -1\n", 20, "'damping' in [effects.damping] is -1",
             "from 0"),
       added("[effects.proximity]\ndistance = 0\n", 20, "'distance' in [effects.proximity] is 0",
@@ -271,7 +280,24 @@ TEST_F(BadSceneTest, HasNumbersWithoutSense) {
   });
 }
 
+TEST_F(BadSceneTest, HasKeysOfEarlierVersions) {
+  const std::string springs(kSprings);
+  expect_refused({
+      {springs, "[effects.contact]\nstiffness = 2000", 18,
+       "'stiffness' in [effects.contact] belongs to [effects.springs]", "take the key out"},
+      {springs, "[effects.contact]\nskin = 1\nmargin = 0.25", 19,
+       "'margin' in [effects.contact] belongs to [effects.springs]", "take the key out"},
+      {springs, "[effects.contact]\n[effects.friction]\nstatic = 0.3", 19,
+       "'static' in [effects.friction] is no key any more", "give 'coefficient'"},
+      {springs, "[effects.contact]\n[effects.friction]\ndynamic = 0.2", 19,
+       "'dynamic' in [effects.friction] is no key any more", "give 'coefficient'"},
+      {springs, "[effects.contact]\n[effects.friction]\nstiffness = 500", 19,
+       "'stiffness' in [effects.friction] is no key any more", "give 'coefficient'"},
+  });
+}
+
 TEST_F(BadSceneTest, ContradictsItself) {
+  const std::string springs(kSprings);
   expect_refused({
       {"shape = \"box\"", "shape = \"box\"\nfile = \"a.stl\"", 4,
        "[fixed] has both a 'file' and a 'shape'", "take out one"},
@@ -283,10 +309,14 @@ TEST_F(BadSceneTest, ContradictsItself) {
       {"unit = \"mm\"\nrate = 1000\n[fixed]\nshape = \"box\"\nsize = [40, 40, 10]",
        "unit = \"inch\"\n[fixed]\nshape = \"splint\"", 3, "a built-in splint is in millimetres",
        "write unit = \"mm\""},
-      {"[effects.contact]\nstiffness = 2000", "[effects.friction]", 17,
-       "[effects.friction] acts at contacts", "add the table [effects.contact]"},
-      {"[effects.contact]\nstiffness = 2000", "[effects.damping]", 17,
-       "[effects.damping] acts at contacts", "add the table [effects.contact]"},
+      {springs, "[effects.friction]", 17, "[effects.friction] is a part of contact",
+       "add the table [effects.contact]"},
+      added("[effects.friction]\n", 19, "[effects.friction] is a part of contact",
+            "write [effects.contact] in place of [effects.springs]"),
+      added("[effects.contact]\n", 17, "a scene has [effects.contact] or [effects.springs]",
+            "take one of the two out"),
+      {springs, "[effects.damping]", 17, "[effects.damping] acts at contacts",
+       "add the table [effects.contact] or [effects.springs]"},
       {"plan = [\n  { time = 0, move = [0, 0, 0] },\n  { time = 1, move = [0, 0, -4] },\n]",
        "plan = []", 13, "'plan' in [device] is an array of 0", "an array of tables"},
       {"  { time = 1, move = [0, 0, -4] },", "  3", 13, "'plan' in [device] is an array of 2",
@@ -345,7 +375,7 @@ TEST_F(BadSceneTest, NamesFilesInDifferentFrames) {
       "scene.toml",
       "unit = \"mm\"\n[fixed]\nfile = \"ras.stl\"\nvoxel_size = 0.5\n[held]\nfile = \"lps.stl\"\n"
       "voxel_size = 0.5\n[device]\nkind = \"hand\"\nplan = [{ time = 0, move = [0, 0, 5] }, "
-      "{ time = 1, move = [0, 0, 2] }]\n[effects.contact]\nstiffness = 2000\n");
+      "{ time = 1, move = [0, 0, 2] }]\n[effects.contact]\n");
   const auto error = error_of([&] { static_cast<void>(build_scene(read_scene(file))); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kInputInvalid);

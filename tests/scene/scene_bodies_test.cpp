@@ -5,7 +5,7 @@
 #include "ist/base/error.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/sphere_tree.h"
-#include "loop/haptics/effects/contact_effect.h"
+#include "loop/haptics/effects/springs_effect.h"
 #include "scene/scene_case.h"
 #include "support/errors.h"
 #include "support/shapes.h"
@@ -64,12 +64,12 @@ TEST_F(SceneBodies, WhoseOutsideIsNotKnownPushNothingAndSaySo) {
 
   // An effect of the caller's is left out by the same rule.
   std::vector<std::unique_ptr<Effect>> own;
-  own.push_back(std::make_unique<ContactEffect>(ContactSettings{}));
+  own.push_back(std::make_unique<SpringsEffect>(SpringsSettings{}));
   const BuiltScene with_own = build_scene(scene_of(text), std::move(own));
   EXPECT_EQ(with_own.simulation->effects().size(), 1u);
   EXPECT_EQ(pressed_by(scene), 0);  // nothing holds its weight but the hand
 
-  const BuiltScene silent = built(replaced(text, "[effects.contact]\nstiffness = 2000\n", ""));
+  const BuiltScene silent = built(replaced(text, "[effects.springs]\nstiffness = 20000\n", ""));
   EXPECT_FALSE(warns(silent, "pushes nothing"));
 }
 
@@ -168,7 +168,7 @@ TEST_F(SceneBodies, VoxelsTooSmallAreRefusedByTheLineThatNamesThem) {
         Case{sound + proximity + "1e-5\n",
              "scene.toml:20: proximity voxels have half that size: the fixed shape",
              "the smallest size for this mesh"},
-        Case{replaced(sound, "[effects.contact]\nstiffness = 2000\n", proximity + "0.2\n"),
+        Case{replaced(sound, "[effects.springs]\nstiffness = 20000\n", proximity + "0.2\n"),
              "scene.toml:18: the fixed shape: voxel size 0.1 needs", "use a voxel size of",
              1'000'000}}) {
     SCOPED_TRACE(each.what);

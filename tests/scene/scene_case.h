@@ -29,10 +29,12 @@ plan = [
   { time = 0, move = [0, 0, 0] },
   { time = 1, move = [0, 0, -4] },
 ]
-[effects.contact]
-stiffness = 2000
+[effects.springs]
+stiffness = 20000
 )";
-inline constexpr std::string_view kLastLine = "stiffness = 2000\n";
+/// Its springs, and its last line.
+inline constexpr std::string_view kSprings = "[effects.springs]\nstiffness = 20000\n";
+inline constexpr std::string_view kLastLine = "stiffness = 20000\n";
 
 /// Returns the text with the first `part` replaced. Throws std::logic_error if there is none.
 [[nodiscard]] inline std::string replaced(std::string_view text, std::string_view part,

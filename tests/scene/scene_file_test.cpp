@@ -74,7 +74,7 @@ TEST_F(SceneFile, SaysWhatIsSimulated) {
   EXPECT_EQ(hand.plan[1].time, 1);
   EXPECT_EQ(hand.plan[1].pose.translation, Vector(0, 0, 1e-3 * -4));
   EXPECT_EQ(hand.plan[1].pose.rotation, Eigen::Matrix3d::Identity());
-  EXPECT_EQ(scene.contact.value().stiffness, 2000);
+  EXPECT_EQ(scene.springs.value().stiffness, 20000);
 }
 
 TEST_F(SceneFile, TakesAWholeFloatForAWholeNumber) {
@@ -84,9 +84,9 @@ TEST_F(SceneFile, TakesAWholeFloatForAWholeNumber) {
 
 TEST_F(SceneFile, LeavesOutWhatIsNotNamed) {
   const Scene scene = read(kSoundScene);
-  EXPECT_EQ(make_effects(scene, {}, true, 1).size(), 1u);
+  EXPECT_EQ(make_effects(scene, {}, true).size(), 1u);
   EXPECT_FALSE(scene.open);
-  EXPECT_FALSE(read(replaced(kSoundScene, "[effects.contact]\nstiffness = 2000\n", "")).contact);
+  EXPECT_FALSE(read(replaced(kSoundScene, kSprings, "")).springs);
 }
 
 TEST_F(SceneFile, HasDefaults) {
@@ -107,13 +107,15 @@ TEST_F(SceneFile, HasDefaults) {
 
 TEST_F(SceneFile, HasDefaultsOfEachEffect) {
   const Scene scene = read(replaced(kSoundScene, kLastLine,
-                                    "[effects.friction]\n[effects.damping]\n"
+                                    "[effects.damping]\n"
                                     "[effects.proximity]\ndistance = 2\n"
                                     "[effects.gravity]\nmass = 0.1\n"
                                     "[effects.snap]\nradius = 3\n"));
-  EXPECT_EQ(numbers_of(scene.contact.value()), numbers(2000, 0.25));
-  EXPECT_EQ(numbers_of(scene.friction.value()), numbers(0.3, 0.2, 1000));
-  EXPECT_EQ(numbers_of(scene.damping.value()), numbers(1));
+  EXPECT_EQ(scene.springs.value().stiffness, 40000);
+  EXPECT_EQ(scene.springs->margin, 0);
+  EXPECT_EQ(scene.springs->full_area, 0);
+  EXPECT_FALSE(scene.springs->allow_breaking);
+  EXPECT_EQ(numbers_of(scene.damping.value()), numbers(10));
   EXPECT_EQ(numbers_of(scene.proximity.value()), numbers(1e-3 * 2, 2));
   EXPECT_EQ(scene.gravity.value().mass, 0.1);
   EXPECT_FALSE(scene.gravity->centre);
@@ -126,20 +128,27 @@ TEST_F(SceneFile, HasDefaultsOfEachEffect) {
   EXPECT_EQ(scene.snap->angle, 0.2);
 }
 
+TEST_F(SceneFile, HasDefaultsOfContactAndFriction) {
+  const Scene scene =
+      read(replaced(kSoundScene, kSprings, "[effects.contact]\n[effects.friction]\n"));
+  EXPECT_FALSE(scene.springs);
+  EXPECT_EQ(scene.contact.value().skin, 0);
+  EXPECT_EQ(scene.contact->trust, 0);
+  EXPECT_EQ(scene.contact->slack, 0);
+  EXPECT_EQ(scene.contact->steps, 3);
+  EXPECT_EQ(numbers_of(scene.friction.value()), numbers(0.3));
+}
+
 TEST_F(SceneFile, LetsDefaultsFollowWhatIsNamed) {
-  const Scene scene = read(
-      with_lines("[safety]\nmax_force = 3\nmax_torque = 0.1\n[effects.friction]\nstatic = 0.1\n"));
+  const Scene scene = read(with_lines("[safety]\nmax_force = 3\nmax_torque = 0.1\n"));
   EXPECT_EQ(scene.coupling.max_force, 3);
   EXPECT_EQ(scene.coupling.max_torque, 0.1);
-  EXPECT_EQ(scene.friction.value().dynamic_coefficient, 0.1);
 }
 
 TEST_F(SceneFile, TakesEveryKeyOfEachEffect) {
-  const Scene scene = read(with_lines(R"(
-[effects.friction]
-static = 0.5
-dynamic = 0.25
-stiffness = 700
+  const Scene scene = read(with_lines(R"(margin = 0.25
+full_area = 3
+allow_breaking = true
 [effects.damping]
 damping = 3
 [effects.proximity]
@@ -157,7 +166,9 @@ angular_stiffness = 0.3
 radius = 4
 angle = 0.5
 )"));
-  EXPECT_EQ(numbers_of(scene.friction.value()), numbers(0.5, 0.25, 700));
+  EXPECT_EQ(scene.springs.value().margin, 1e-3 * 0.25);
+  EXPECT_EQ(scene.springs->full_area, 1e-3 * 1e-3 * 3);
+  EXPECT_TRUE(scene.springs->allow_breaking);
   EXPECT_EQ(numbers_of(scene.damping.value()), numbers(3));
   EXPECT_EQ(numbers_of(scene.proximity.value()), numbers(1e-3 * 1.5, 4));
   EXPECT_EQ(scene.gravity.value().mass, 0.2);
@@ -171,6 +182,22 @@ angle = 0.5
   EXPECT_EQ(scene.snap->angular_stiffness, 0.3);
   EXPECT_EQ(scene.snap->radius, 1e-3 * 4);
   EXPECT_EQ(scene.snap->angle, 0.5);
+}
+
+TEST_F(SceneFile, TakesEveryKeyOfContactAndFriction) {
+  const Scene scene = read(replaced(kSoundScene, kSprings, R"([effects.contact]
+skin = 0.01
+trust = 0.02
+slack = 0.03
+steps = 10
+[effects.friction]
+coefficient = 0.5
+)"));
+  EXPECT_EQ(scene.contact.value().skin, 0.01) << "not in the scene's unit";
+  EXPECT_EQ(scene.contact->trust, 0.02);
+  EXPECT_EQ(scene.contact->slack, 0.03);
+  EXPECT_EQ(scene.contact->steps, 10);
+  EXPECT_EQ(numbers_of(scene.friction.value()), numbers(0.5));
 }
 
 TEST_F(SceneFile, TakesEveryKeyOfCouplingAndSafety) {
@@ -343,7 +370,7 @@ TEST_F(SceneFile, IsTextOfAnyHabit) {
        {lines_of_windows, "\xEF\xBB\xBF" + std::string(kSoundScene),
         "# é\n" + std::string(kSoundScene.substr(0, kSoundScene.size() - 1))}) {
     const Scene scene = read(text);
-    EXPECT_EQ(scene.contact.value().stiffness, 2000);
+    EXPECT_EQ(scene.springs.value().stiffness, 20000);
     EXPECT_EQ(std::get<HandSettings>(scene.device).plan.size(), 2u);
   }
 }

@@ -27,9 +27,8 @@ Scene tilted_scene() {
                       {1, {Eigen::Matrix3d::Identity(), Vector3d(4e-3, 1e-3, -1.5e-3)}}}};
   scene.coupling = {1000, 0.5, 1, 5e-4, 5, 0.2};
   scene.safety = {8, 0.3, 500, 20, 0.1};
-  scene.contact = ContactSettings{2000, 0.5};
-  scene.friction = FrictionSettings{0.3, 0.2, 1000};
-  scene.damping = DampingSettings{1};
+  scene.springs = SpringsSettings{.stiffness = 20000};
+  scene.damping = DampingSettings{10};
   return scene;
 }
 

@@ -120,7 +120,7 @@ TEST_F(SceneStart, IsOpenedThroughAWholeBodyWhereItsAxisLeadsThere) {
 
 TEST_F(SceneStart, WithoutContactsIsNotLookedAt) {
   const BuiltScene scene =
-      built(replaced(starting("[0, 0, 0]"), "[effects.contact]\nstiffness = 2000\n",
+      built(replaced(starting("[0, 0, 0]"), "[effects.springs]\nstiffness = 20000\n",
                      "[effects.gravity]\nmass = 0.1\n"));
   EXPECT_TRUE(scene.warnings.empty());
   EXPECT_FALSE(note_of(scene, "free start").built);

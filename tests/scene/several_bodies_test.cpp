@@ -53,7 +53,7 @@ attach = "piece"
 [[changes]]
 time = 0.5
 release = "piece"
-[effects.contact]
+[effects.springs]
 )";
 
 class SeveralBodies : public SceneCase {
@@ -195,7 +195,7 @@ TEST_F(SeveralBodies, WithWrongChangesAreRefused) {
 
 // Nothing would tell whether the body that the hand takes is free.
 TEST_F(SeveralBodies, ForTheHandNeedContacts) {
-  expect_refused("[effects.contact]", "[effects.gravity]\nmass = 0.1", 13,
+  expect_refused("[effects.springs]", "[effects.gravity]\nmass = 0.1", 13,
                  "whether anything touches piece is not known", "[effects.contact]");
 }
 

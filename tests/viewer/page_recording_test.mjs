@@ -25,8 +25,8 @@ translation = [0, 0, -4]
 [device]
 kind = "hand"
 plan = [{ time = 0, move = [0, 0, 0] }, { time = 0.3, move = [0, 0, 5] }]
-[effects.contact]
-stiffness = 2000
+[effects.springs]
+stiffness = 20000
 `;
 const last = 299,
   lateTick = 100,

@@ -96,10 +96,16 @@ std::optional<Vector6> Tool::motion(const EffectInput& input, TimedEffects& effe
                                     const VirtualCoupling& coupling,
                                     const VirtualCoupling::Stretch& stretch, NearestMotion* bounds,
                                     double tolerance) const noexcept {
+  // Coupling and effects that are linear ask for the same motion in each step.
+  constexpr double kSame = 1e-24;
+  std::optional<Vector6> last;
   return balance(input, effects, coupling, stretch,
                  [&](const Matrix6& stiffness, const Vector6& wanted) -> Vector6 {
                    if (bounds == nullptr) return wanted;
-                   bounds->solve(stiffness, wanted, tolerance);
+                   const bool same =
+                       last && (wanted - *last).squaredNorm() <= kSame * last->squaredNorm();
+                   if (!same) bounds->solve(stiffness, wanted, tolerance);
+                   last = wanted;
                    return bounds->motion();
                  });
 }

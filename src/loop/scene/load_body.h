@@ -17,10 +17,15 @@ struct LoadedBody {
   std::string name;        ///< of the file or the shape, for messages
   /// Oriented outward. Null if the source is a tree that was built without triangles.
   std::unique_ptr<TriangleMesh> mesh;
-  std::unique_ptr<const SphereTree> tree;            ///< null unless the source is a tree
-  bool outside_is_known = false;                     ///< from its triangles, or trusted
-  PatientFrame frame = PatientFrame::kUnknown;       ///< as its file says it
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< centre of the grid, mesh coordinates
+  std::unique_ptr<const SphereTree> tree;       ///< null unless the source is a tree
+  bool outside_is_known = false;                ///< from its triangles, or trusted
+  PatientFrame frame = PatientFrame::kUnknown;  ///< as its file says it
+  /// The origin of the body's frame, mesh coordinates: the middle of its box, or Scene::origin.
+  /// Without a mesh the centre of the grid.
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  double radius = 0;      ///< bounds the distance of the surface from there, mesh units
+  double diagonal = 0;    ///< of its box, mesh units; without a mesh of the box round its voxels
+  double voxel_size = 0;  ///< mesh units; 0 if the scene needs no voxels
 
   /// Whether it is fixed at some time of a run.
   [[nodiscard]] bool may_be_fixed() const { return !held || named->attachable; }
@@ -28,10 +33,11 @@ struct LoadedBody {
   [[nodiscard]] bool may_be_held() const { return held || named->attachable; }
 };
 
-/// Reads or makes all bodies: the fixed ones, then the held ones. Adds the flaws of their meshes to
-/// `warnings`. Throws the errors of reading; kInputInvalid (fail_at) for a voxel size that does not
-/// fit the mesh, and for files that name different frames of a patient.
-[[nodiscard]] std::vector<LoadedBody> load_bodies(const Scene& scene,
+/// Reads or makes all bodies: the fixed ones, then the held ones. `voxels` says whether the scene
+/// needs their voxels. Adds the flaws of their meshes to `warnings`. Throws the errors of reading;
+/// kInputInvalid (fail_at) for a voxel size that does not fit the mesh, and for files that name
+/// different frames of a patient.
+[[nodiscard]] std::vector<LoadedBody> load_bodies(const Scene& scene, bool voxels,
                                                   std::vector<std::string>& warnings);
 
 }  // namespace ist

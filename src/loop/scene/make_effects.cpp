@@ -1,25 +1,21 @@
 #include "loop/scene/make_effects.h"
 
-#include "loop/haptics/effects/contact_effect.h"
 #include "loop/haptics/effects/damping_effect.h"
-#include "loop/haptics/effects/friction_effect.h"
 #include "loop/haptics/effects/gravity_effect.h"
 #include "loop/haptics/effects/proximity_effect.h"
 #include "loop/haptics/effects/snap_effect.h"
+#include "loop/haptics/effects/springs_effect.h"
 
 namespace ist {
 
 std::vector<std::unique_ptr<Effect>> make_effects(const Scene& scene, const BodyHome& home,
-                                                  bool contacts, std::size_t pairs) {
+                                                  bool contacts) {
   std::vector<std::unique_ptr<Effect>> effects;
-  if (scene.contact && contacts) {
-    auto contact = std::make_unique<ContactEffect>(*scene.contact);
-    const ContactEffect& load = *contact;
-    effects.push_back(std::move(contact));
-    if (scene.friction) {
-      effects.push_back(std::make_unique<FrictionEffect>(*scene.friction, load, pairs));
-    }
-    if (scene.damping) effects.push_back(std::make_unique<DampingEffect>(*scene.damping));
+  if (scene.springs && contacts) {
+    effects.push_back(std::make_unique<SpringsEffect>(*scene.springs));
+  }
+  if (scene.damping && contacts) {
+    effects.push_back(std::make_unique<DampingEffect>(*scene.damping));
   }
   if (scene.proximity && contacts) {
     effects.push_back(std::make_unique<ProximityEffect>(*scene.proximity));

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -22,10 +21,11 @@ struct BodyHome {
 };
 
 /// Makes the effects of a scene, in the order of Scene's members. Without `contacts`, effects that
-/// act at contacts or by proximity are left out. `pairs` of bodies can touch.
+/// act at contacts or by proximity are left out. `contact` and `friction` are no effects: the
+/// simulation itself keeps the bodies apart.
 [[nodiscard]] std::vector<std::unique_ptr<Effect>> make_effects(const Scene& scene,
-                                                                const BodyHome& home, bool contacts,
-                                                                std::size_t pairs);
+                                                                const BodyHome& home,
+                                                                bool contacts);
 
 /// The union of the effects' needs.
 [[nodiscard]] EffectNeeds needs_of(const std::vector<std::unique_ptr<Effect>>& effects) noexcept;

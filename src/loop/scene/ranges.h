@@ -20,7 +20,8 @@ inline constexpr NumberRange kDuration{1e-3, 1e6, "s"};
 inline constexpr NumberRange kInstant{0, 1e6, "s"};
 inline constexpr NumberRange kLength{1e-12, 1e12, "in the scene's unit"};
 inline constexpr NumberRange kOpening{0, 20, "mm"};
-inline constexpr NumberRange kResolution{0, 1e12, "in the scene's unit"};
+inline constexpr NumberRange kLengthOrNone{0, 1e12, "in the scene's unit"};
+inline constexpr NumberRange kArea{0, 1e12, "in the scene's unit squared"};
 inline constexpr NumberRange kPlace{-1e12, 1e12, "in the scene's unit"};
 inline constexpr NumberRange kStiffness{0, 1e6, "N/m"};
 inline constexpr NumberRange kAngularStiffness{0, 1e6, "N m/rad"};
@@ -30,7 +31,7 @@ inline constexpr NumberRange kDelay{0, HandDevice::kLongestDelay, "s"};
 inline constexpr NumberRange kMass{1e-6, 1e3, "kg"};
 inline constexpr NumberRange kInertia{1e-9, 1e3, "kg m²"};
 inline constexpr NumberRange kAcceleration{-1e3, 1e3, "m/s²"};
-inline constexpr NumberRange kMargin{0, 0.5, "voxels"};
+inline constexpr NumberRange kSteps{1, 10, ""};
 inline constexpr NumberRange kFriction{0, 10, ""};
 inline constexpr NumberRange kAngle{1e-6, 3.14, "rad"};
 inline constexpr NumberRange kAngularResolution{0, 1, "rad"};
@@ -68,12 +69,10 @@ inline constexpr NumberKey<SafetySettings> kSafetyKeys[] = {
     {"torque_slew", &SafetySettings::torque_slew, kTorqueSlew},
     {"soft_start", &SafetySettings::soft_start, kSoftStart}};
 inline constexpr NumberKey<ContactSettings> kContactKeys[] = {
-    {"stiffness", &ContactSettings::stiffness, kStiffness},
-    {"margin", &ContactSettings::margin, kMargin}};
+    {"skin", &ContactSettings::skin, kLengthOrNone},
+    {"trust", &ContactSettings::trust, kLengthOrNone}};
 inline constexpr NumberKey<FrictionSettings> kFrictionKeys[] = {
-    {"static", &FrictionSettings::static_coefficient, kFriction},
-    {"dynamic", &FrictionSettings::dynamic_coefficient, kFriction},
-    {"stiffness", &FrictionSettings::stiffness, kStiffness}};
+    {"coefficient", &FrictionSettings::coefficient, kFriction}};
 inline constexpr NumberKey<SnapSettings> kSnapKeys[] = {
     {"stiffness", &SnapSettings::stiffness, kStiffness},
     {"angular_stiffness", &SnapSettings::angular_stiffness, kAngularStiffness},

@@ -91,10 +91,11 @@ SceneBody read_body(TableReader& table, double unit) {
   } else {
     table.fail_missing("file", fmt::format("a mesh or a tree, or shape = {}", kShapes));
   }
-  if (!is_tree) {
+  if (table.has("voxel_size")) {
     body.voxel_size = table.number("voxel_size", kLength);
-  } else if (table.has("voxel_size")) {
-    table.fail("voxel_size", "the file is a tree, which has a voxel size", "take the key out");
+    if (is_tree) {
+      table.fail("voxel_size", "the file is a tree, which has its voxels", "take the key out");
+    }
   }
   if (table.has("spheres")) {
     body.spheres =
@@ -124,7 +125,9 @@ std::vector<SceneBody> read_held(TableReader& scene, Scene& result) {
   std::vector<SceneBody> bodies;
   for (TableReader& table : scene.table_or_tables("held")) {
     bodies.push_back(read_body(table, result.unit));
-    if (bodies.size() > 1 || !table.has("open")) continue;
+    if (bodies.size() > 1) continue;
+    if (table.has("origin")) result.origin = table.vector("origin", kPlace);
+    if (!table.has("open")) continue;
     result.open = table.choice("open", axis, R"("x", "-x", "y", "-y", "z" or "-z")");
   }
   return bodies;

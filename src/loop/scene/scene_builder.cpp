@@ -2,15 +2,18 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/haptics/placement.h"
+#include "ist/measure/penetration.h"
 #include "ist/mesh/mesh.h"
 #include "ist/query/inside.h"
 #include "ist/query/query.h"
@@ -35,9 +38,10 @@ class FreeStart {
   // null, a body inside the other one counts as free.
   // @param pose maps held mesh coordinates to fixed mesh coordinates
   // @param axis the axis of open_distance(), a unit vector in fixed mesh coordinates
+  // @param step of open_distance(), mesh units
   void add(const SphereTree& fixed, const SphereTree& held, const TriangleMesh* fixed_mesh,
            const TriangleMesh* held_mesh, const Eigen::Isometry3d& pose,
-           const Eigen::Vector3d& axis);
+           const Eigen::Vector3d& axis, double step);
 
   enum class Way { kIntersecting, kInside };
   // A pair that is not free, by the order of add(), and how.
@@ -50,9 +54,13 @@ class FreeStart {
   [[nodiscard]] std::optional<Flaw> flaw(double distance = 0) noexcept;
 
   // Finds the distance by which the held bodies must move along the axis to be free, mesh units:
-  // the first multiple of a voxel at which all are free and one voxel more. Empty where none is
+  // the first multiple of a step at which all are free and one step more. Empty where none is
   // within the bodies' extents. Cost: 20 to 300 µs a voxel and pair.
   [[nodiscard]] std::optional<double> open_distance() noexcept;
+
+  // Returns the place at which a pair intersects, and how deep, for a message: " by 0.2 at x, y,
+  // z"; or ", or may intersect" without triangles. In the unit and the fixed body's coordinates.
+  [[nodiscard]] std::string place(const Flaw& flaw);
 
  private:
   struct CheckedPair {
@@ -63,8 +71,11 @@ class FreeStart {
   };
 
   std::vector<CheckedPair> pairs_;
-  double voxel_ = 0, farthest_ = 0;
+  double step_ = 0, farthest_ = 0;  // mesh units
 };
+
+// The steps in which a held body is opened without voxels, along its diagonal.
+constexpr double kOpenings = 500;
 
 // All pairs have a query at once, beside those of the loop: these are small, and slower by a tenth.
 QueryOptions small_query() {
@@ -75,9 +86,8 @@ QueryOptions small_query() {
 
 void FreeStart::add(const SphereTree& fixed, const SphereTree& held, const TriangleMesh* fixed_mesh,
                     const TriangleMesh* held_mesh, const Eigen::Isometry3d& pose,
-                    const Eigen::Vector3d& axis) {
-  const double voxel = std::min(fixed.voxel_size(), held.voxel_size());
-  voxel_ = pairs_.empty() ? voxel : std::min(voxel_, voxel);
+                    const Eigen::Vector3d& axis, double step) {
+  step_ = pairs_.empty() ? step : std::min(step_, step);
   farthest_ = std::max(farthest_, 2 * (fixed.bounding_radius() + held.bounding_radius()));
   pairs_.push_back(
       {Query(fixed, held, small_query()), std::nullopt, {pose.linear(), pose.translation()}, axis});
@@ -101,12 +111,32 @@ std::optional<FreeStart::Flaw> FreeStart::flaw(double distance) noexcept {
 }
 
 std::optional<double> FreeStart::open_distance() noexcept {
-  double distance = voxel_;
+  double distance = step_;
   while (distance <= farthest_) {
-    if (!flaw(distance) && !flaw(distance + voxel_)) return distance + voxel_;
-    distance += voxel_;
+    if (!flaw(distance) && !flaw(distance + step_)) return distance + step_;
+    distance += step_;
   }
   return std::nullopt;
+}
+
+std::string FreeStart::place(const Flaw& flaw) {
+  CheckedPair& pair = pairs_[flaw.pair];
+  if (!pair.query.has_triangles()) return ", or may intersect";
+  const Eigen::Isometry3d pose = pair.pose.isometry();
+  std::array<NearPair, 1> meeting;
+  const NearPairsResult near = pair.query.near_pairs(pose, 0, meeting);
+  if (near.status != QueryStatus::kDone || near.near_pairs == 0) return "";
+  Eigen::Vector3d at = meeting[0].fixed_point;
+  std::string depth;
+  if (pair.inside) {
+    const Penetration deepest = penetration(pair.query, pose, step_);
+    if (deepest.status == Penetration::Status::kDone && deepest.lower > 0) {
+      at = deepest.point;
+      depth = fmt::format(" by at least {:.3g}", deepest.lower);
+    }
+  }
+  return fmt::format("{} at ({:.4g}, {:.4g}, {:.4g}) of the fixed body", depth, at[0], at[1],
+                     at[2]);
 }
 
 class Builder {
@@ -121,7 +151,10 @@ class Builder {
         period_(1e-9 * std::floor(1e9 / scene.rate)) {}
 
   BuiltScene build() {
-    bodies_ = load_bodies(scene_, built_.warnings);
+    const bool own = std::any_of(own_.begin(), own_.end(),
+                                 [](const auto& effect) { return effect->needs().contacts(); });
+    voxels_ = !scene_.contact && (scene_.springs || own);
+    bodies_ = load_bodies(scene_, voxels_, built_.warnings);
     home_ = home_of(bodies_[scene_.fixed.size()]);
     choose_effects();
     built_.trees = build_scene_trees(scene_, bodies_, needs_, max_memory_, notes_, progress_);
@@ -136,11 +169,14 @@ class Builder {
   void choose_effects();
   void warn_of_unknown_outside(const LoadedBody& body);
   void refuse_to_take(bool outside_is_known) const;
+  void check_springs();
   void place_bodies();
   void place_tool();
+  [[nodiscard]] WallSettings wall_settings() const;
   void build_simulation();
   void warn_of(const BorderLimit& limit, const char* key, const char* unit);
   [[nodiscard]] BodyHome home_of(const LoadedBody& body) const;
+  [[nodiscard]] bool finds_contacts() const { return scene_.contact || needs_.contacts(); }
   [[nodiscard]] std::vector<Waypoint> plan() const;
   [[nodiscard]] std::unique_ptr<Device> make_device() const;
 
@@ -148,7 +184,8 @@ class Builder {
   std::vector<std::unique_ptr<Effect>> own_;
   std::uint64_t max_memory_;
   Progress* progress_;
-  double period_;  // s
+  double period_;        // s
+  bool voxels_ = false;  // contacts are pairs of leaves
   BuiltScene built_;
   BuildNotes notes_;
   std::vector<LoadedBody> bodies_;
@@ -175,7 +212,7 @@ void Builder::warn_of_unknown_outside(const LoadedBody& body) {
   if (body.outside_is_known) return;
   const bool own = std::any_of(own_.begin(), own_.end(),
                                [](const auto& effect) { return needs_outside(effect->needs()); });
-  if (!scene_.contact && !scene_.proximity && !own) return;
+  if (!scene_.proximity && (scene_.contact || (!scene_.springs && !own))) return;
   built_.warnings.push_back(
       fmt::format("{}: the mesh is not closed and consistent, so its outside is not known and no "
                   "contact is felt: repair it, or say trust_normals = true in [{}]",
@@ -189,12 +226,16 @@ void Builder::choose_effects() {
     warn_of_unknown_outside(body);
     outside_is_known = outside_is_known && body.outside_is_known;
   }
-  effects_ = make_effects(scene_, home_, outside_is_known, pairs_.size());
+  effects_ = make_effects(scene_, home_, outside_is_known);
   for (auto& effect : own_) {
-    if (outside_is_known || !needs_outside(effect->needs())) effects_.push_back(std::move(effect));
+    const EffectNeeds needs = effect->needs();
+    const bool has_all =
+        outside_is_known || !needs_outside(needs) || (scene_.contact && !needs.proximity);
+    if (has_all) effects_.push_back(std::move(effect));
   }
   needs_ = needs_of(effects_);
-  if (!needs_.contacts()) refuse_to_take(outside_is_known);
+  if (scene_.springs && outside_is_known) check_springs();
+  if (!finds_contacts()) refuse_to_take(outside_is_known);
 }
 
 // Without contacts nothing would tell whether a body that the hand takes is free.
@@ -205,7 +246,7 @@ void Builder::refuse_to_take(bool outside_is_known) const {
       fail_at(
           scene_, path_of_body(key, i, bodies.size()) + ".attachable",
           fmt::format("whether anything touches {} is not known: {}", bodies[i].name,
-                      outside_is_known ? "add the table [effects.contact]"
+                      outside_is_known ? "add the table [effects.contact] or [effects.springs]"
                                        : "give closed meshes, or set trust_normals = true where "
                                          "the normals of one that is open point outward"));
     }
@@ -214,15 +255,45 @@ void Builder::refuse_to_take(bool outside_is_known) const {
   refuse("held", scene_.held);
 }
 
-// Puts the bodies at their places, and bounds the tool's step by the least voxel, so that nothing
-// tunnels: what a script moves in a tick is taken off.
+// Refuses a margin that is wider than half a voxel, and a wall that breaks at less force than the
+// coupling exerts.
+void Builder::check_springs() {
+  const SpringsSettings& springs = *scene_.springs;
+  const auto voxel_of = [&](const HandPair& pair) {
+    return 0.5 * (bodies_[pair.fixed].voxel_size + bodies_[pair.held].voxel_size) * scene_.unit;
+  };
+  const HandPair& least = *std::min_element(
+      pairs_.begin(), pairs_.end(),
+      [&](const HandPair& a, const HandPair& b) { return voxel_of(a) < voxel_of(b); });
+  const double voxel = voxel_of(least);
+  if (springs.margin > 0.5 * voxel) {
+    fail_at(scene_, "effects.springs.margin",
+            fmt::format("it is {:.4g}, more than half a voxel, {:.4g}: lower it, or give larger "
+                        "voxels",
+                        springs.margin / scene_.unit, 0.5 * voxel / scene_.unit));
+  }
+  const double force = breaking_force(springs, voxel);
+  if (force >= scene_.coupling.max_force) return;
+  const std::string breaks = fmt::format(
+      "the wall of springs between {} and {} breaks at {:.3g} N, and the coupling exerts up to "
+      "{:.3g} N",
+      bodies_[least.fixed].named->name, bodies_[least.held].named->name, force,
+      scene_.coupling.max_force);
+  if (!springs.allow_breaking) {
+    fail_at(scene_, "effects.springs.stiffness",
+            fmt::format("{}: give larger voxels, a higher stiffness or a lower coupling.max_force, "
+                        "or say allow_breaking = true in [effects.springs]",
+                        breaks));
+  }
+  built_.warnings.push_back(fmt::format("{}: beyond that force the tool passes through", breaks));
+}
+
+// Puts the bodies at their places. With springs the least voxel bounds the tool's step, so that
+// nothing tunnels: what a script moves in a tick is taken off.
 void Builder::place_bodies() {
-  std::vector<double> radii(bodies_.size(), 0);
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+  for (std::size_t i = 0; i < bodies_.size() && voxels_; ++i) {
     if (!built_.trees[i].contact) continue;
-    const SphereTree& tree = *built_.trees[i].contact;
-    radii[i] = scene_.unit * surface_radius(tree);
-    max_step_ = std::min(max_step_, scene_.unit * tree.voxel_size());
+    max_step_ = std::min(max_step_, scene_.unit * bodies_[i].voxel_size);
   }
   std::vector<BodyPart> parts;
   double script_step = 0;
@@ -232,12 +303,12 @@ void Builder::place_bodies() {
     BodyPart part{.name = named.name,
                   .place = {named.rotation, scene_.unit * named.translation},
                   .centre = body.origin,
-                  .radius = radii[i],
+                  .radius = scene_.unit * body.radius,
                   .held = body.held,
                   .attachable = named.attachable};
     if (!named.script.empty()) {
       script_step =
-          std::max(script_step, step_of(scene_, body, radii[i], period_, 0.5 * max_step_));
+          std::max(script_step, step_of(scene_, body, part.radius, period_, 0.5 * max_step_));
       part.script = plan_of(named, home_of(body), scene_.unit);
     }
     parts.push_back(std::move(part));
@@ -259,7 +330,7 @@ std::vector<Waypoint> Builder::plan() const {
 void Builder::place_tool() {
   const std::vector<Waypoint> plan = this->plan();
   start_ = plan.empty() ? home_.pose : plan.front().pose;
-  if (!needs_.contacts()) {
+  if (!finds_contacts()) {
     notes_.skip("free start", "no effect needs contacts");
     return;
   }
@@ -270,8 +341,11 @@ void Builder::place_tool() {
     if (!placed_.may_touch(pair.fixed, pair.held)) continue;
     const LoadedBody &fixed = bodies_[pair.fixed], &held = bodies_[pair.held];
     const BodyFrames frames = placed_.frames(pair.fixed, pair.held);
-    start.add(*built_.trees[pair.fixed].contact, *built_.trees[pair.held].contact, fixed.mesh.get(),
-              held.mesh.get(), frames.query_pose(start_), frames.fixed.rotation.transpose() * axis);
+    const bool closed = fixed.outside_is_known && held.outside_is_known;
+    start.add(*built_.trees[pair.fixed].contact, *built_.trees[pair.held].contact,
+              closed ? fixed.mesh.get() : nullptr, closed ? held.mesh.get() : nullptr,
+              frames.query_pose(start_), frames.fixed.rotation.transpose() * axis,
+              voxels_ ? std::min(fixed.voxel_size, held.voxel_size) : held.diagonal / kOpenings);
     asked.push_back(pair);
   }
   for (const LoadedBody& body : bodies_) {
@@ -289,7 +363,7 @@ void Builder::place_tool() {
                                 : fmt::format("{} and {}", bodies_[pair.fixed].named->name,
                                               bodies_[pair.held].named->name);
   const std::string how = flaw->way == FreeStart::Way::kIntersecting
-                              ? fmt::format("{} intersect, or may intersect,", which)
+                              ? fmt::format("{} intersect{},", which, start.place(*flaw))
                           : asked.size() == 1 ? "one body is inside the other"
                                               : fmt::format("of {} one is inside the other", which);
   if (!scene_.open) {
@@ -309,6 +383,21 @@ void Builder::place_tool() {
   built_.warnings.push_back(
       fmt::format("{} where the device starts: the tool starts {:.4g} m away, along held.open", how,
                   *way * scene_.unit));
+}
+
+// Lengths that a scene does not name are parts of the tool's size.
+WallSettings Builder::wall_settings() const {
+  constexpr double kSkins = 32'000, kTrusts = 8'000;
+  double diagonal = 0;
+  for (const LoadedBody& body : bodies_) {
+    if (body.held) diagonal = std::max(diagonal, scene_.unit * body.diagonal);
+  }
+  const ContactSettings& contact = *scene_.contact;
+  const auto length = [&](double asked, double part) {
+    return asked > 0 ? scene_.unit * asked : diagonal / part;
+  };
+  return {length(contact.skin, kSkins), length(contact.trust, kTrusts), contact.steps,
+          scene_.friction ? scene_.friction->coefficient : 0};
 }
 
 std::unique_ptr<Device> Builder::make_device() const {
@@ -346,6 +435,11 @@ void Builder::build_simulation() {
                                 .max_step = max_step_,
                                 .start = start_,
                                 .dt = period_};
+  if (scene_.contact) {
+    const WallSettings settings = wall_settings();
+    parts.wall.emplace(settings);
+    built_.step_limit = settings.steps * settings.trust;
+  }
   build_queries({scene_, bodies_, built_.trees, placed_, pairs_, period_}, needs_,
                 PlanReach(plan(), start_), max_memory_, notes_, parts);
   for (const SceneChange& change : scene_.changes) {

@@ -36,16 +36,18 @@ class Check {
       fail_at(scene_, key, fmt::format("it is {} m: give a positive length", value));
     }
   }
+  // A length or an area in SI, which was one in the scene's unit, or 0.
+  void amount(const char* key, double value) const {
+    if (!(value >= 0 && std::isfinite(value))) {
+      fail_at(scene_, key, fmt::format("it is {}: give 0 or more", value));
+    }
+  }
   void body(const std::string& table, const SceneBody& body) const {
     if (!body.script.empty() && body.attachable) {
       fail_at(
           scene_, table + ".attachable",
           fmt::format("{} follows a script, so the hand cannot take it: take out one of the two",
                       body.name));
-    }
-
-    if (std::holds_alternative<BuiltInShape>(body.source) && !body.voxel_size) {
-      fail_at(scene_, table + ".voxel_size", "a shape has no voxels: give their size");
     }
     if (!Placement::from(Placement{body.rotation}.isometry()) || !body.translation.allFinite()) {
       fail_at(scene_, table + ".quaternion",
@@ -138,21 +140,39 @@ void check_changes(const Scene& scene) {
   }
 }
 
+// Which effects may stand beside each other.
+void check_contact_effects(const Scene& scene) {
+  if (scene.contact && scene.springs) {
+    fail_at(scene, "effects.springs",
+            "a scene has [effects.contact] or [effects.springs]: take one of the two out");
+  }
+  if (scene.friction && !scene.contact) {
+    fail_at(scene, "effects.friction",
+            scene.springs
+                ? "[effects.friction] is a part of contact, and springs have none: write "
+                  "[effects.contact] in place of [effects.springs], or take this table out"
+                : "[effects.friction] is a part of contact: add the table "
+                  "[effects.contact], or take this one out");
+  }
+  if (scene.damping && !scene.contact && !scene.springs) {
+    fail_at(scene, "effects.damping",
+            "[effects.damping] acts at contacts: add the table [effects.contact] or "
+            "[effects.springs], or take this one out");
+  }
+}
+
 void check_effects(const Check& check, const Scene& scene) {
-  if (!scene.contact && (scene.friction || scene.damping)) {
-    const char* effect = scene.friction ? "friction" : "damping";
-    fail_at(scene, fmt::format("effects.{}", effect),
-            fmt::format("[effects.{}] acts at contacts: add the table [effects.contact], or take "
-                        "this one out",
-                        effect));
+  check_contact_effects(scene);
+  if (scene.contact) {
+    check.numbers("effects.contact", *scene.contact, kContactKeys);
+    check.number("effects.contact.steps", scene.contact->steps, kSteps);
   }
-  if (scene.contact) check.numbers("effects.contact", *scene.contact, kContactKeys);
-  if (scene.friction) {
-    check.numbers("effects.friction", *scene.friction, kFrictionKeys);
-    if (scene.friction->dynamic_coefficient > scene.friction->static_coefficient) {
-      fail_at(scene, "effects.friction.dynamic", "it is more than the static one: lower it");
-    }
+  if (scene.springs) {
+    check.number("effects.springs.stiffness", scene.springs->stiffness, kStiffness);
+    check.amount("effects.springs.margin", scene.springs->margin);
+    check.amount("effects.springs.full_area", scene.springs->full_area);
   }
+  if (scene.friction) check.numbers("effects.friction", *scene.friction, kFrictionKeys);
   if (scene.damping) check.number("effects.damping.damping", scene.damping->damping, kDamping);
   if (scene.proximity) {
     check.length("effects.proximity.distance", scene.proximity->distance);

@@ -12,19 +12,33 @@
 namespace ist {
 namespace {
 
-FrictionSettings read_friction(TableReader friction) {
-  FrictionSettings settings = read_numbers(friction, kFrictionKeys);
-  if (!friction.has("dynamic")) {
-    settings.dynamic_coefficient =
-        std::min(settings.dynamic_coefficient, settings.static_coefficient);
+ContactSettings read_contact(TableReader contact) {
+  for (const char* key : {"stiffness", "margin"}) {
+    contact.refuse_old(key, "belongs to [effects.springs]",
+                       "write that table in place of this one, or take the key out: contact bears "
+                       "any force");
   }
-  if (settings.dynamic_coefficient > settings.static_coefficient) {
-    friction.fail("dynamic",
-                  fmt::format("'dynamic' is {}, more than 'static', which is {}",
-                              settings.dynamic_coefficient, settings.static_coefficient),
-                  "lower it: friction falls as sliding begins");
-  }
+  ContactSettings settings = read_numbers(contact, kContactKeys);
+  settings.steps = static_cast<int>(
+      contact.whole_number("steps", kSteps, static_cast<std::uint64_t>(settings.steps)));
   return settings;
+}
+
+SpringsSettings read_springs(TableReader springs, double unit) {
+  SpringsSettings settings;
+  settings.stiffness = springs.number("stiffness", kStiffness, settings.stiffness);
+  settings.margin = unit * springs.number("margin", kLengthOrNone, 0);
+  settings.full_area = unit * unit * springs.number("full_area", kArea, 0);
+  settings.allow_breaking = springs.flag("allow_breaking", settings.allow_breaking);
+  return settings;
+}
+
+FrictionSettings read_friction(TableReader friction) {
+  for (const char* key : {"static", "dynamic", "stiffness"}) {
+    friction.refuse_old(key, "is no key any more",
+                        "give 'coefficient', the one ratio at which a contact slides");
+  }
+  return read_numbers(friction, kFrictionKeys);
 }
 
 SceneGravity read_gravity(TableReader gravity) {
@@ -75,7 +89,7 @@ HandSettings read_hand(TableReader& device, const DeviceMechanics& mechanics, do
       device.number("arm_angular_stiffness", kAngularStiffness, hand.arm_angular_stiffness);
   hand.arm_angular_damping =
       device.number("arm_angular_damping", kAngularDamping, hand.arm_angular_damping);
-  hand.resolution = unit * device.number("resolution", kResolution, 0);
+  hand.resolution = unit * device.number("resolution", kLengthOrNone, 0);
   hand.angular_resolution = device.number("angular_resolution", kAngularResolution, 0);
   hand.plan = read_plan(device, unit);
   return hand;
@@ -120,7 +134,10 @@ void read_effects(TableReader& scene, Scene& result) {
   if (!scene.has("effects")) return;
   TableReader effects = scene.table("effects");
   if (effects.has("contact")) {
-    result.contact = read_numbers(effects.table("contact"), kContactKeys);
+    result.contact = read_contact(effects.table("contact"));
+  }
+  if (effects.has("springs")) {
+    result.springs = read_springs(effects.table("springs"), result.unit);
   }
   if (effects.has("friction")) result.friction = read_friction(effects.table("friction"));
   if (effects.has("damping")) {

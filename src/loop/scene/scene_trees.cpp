@@ -27,6 +27,7 @@ class TreeBuilder {
   using Tree = std::unique_ptr<const SphereTree>;
 
   [[nodiscard]] Tree contact_tree(LoadedBody& body, bool triangles);
+  [[nodiscard]] Tree wall_tree(LoadedBody& body);
   [[nodiscard]] double near_voxel_size(const std::vector<LoadedBody>& bodies) const;
   [[nodiscard]] Tree near_tree(const LoadedBody& body, double voxel_size);
   [[nodiscard]] Tree coarse_tree(const LoadedBody& body, double voxel_size);
@@ -84,6 +85,14 @@ TreeBuilder::Tree TreeBuilder::contact_tree(LoadedBody& body, bool triangles) {
                  {.voxel_size = *named.voxel_size,
                   .spheres = named.spheres.value_or(SpherePolicy::kSlab),
                   .keep_triangles = triangles});
+  });
+}
+
+TreeBuilder::Tree TreeBuilder::wall_tree(LoadedBody& body) {
+  const std::string why = fmt::format("{}, triangles for effects.contact", body.name);
+  return notes_.make(fmt::format("{} tree", body.named->name), why, [&] {
+    if (body.tree) return std::move(body.tree);
+    return build(body, body.table, {});
   });
 }
 
@@ -145,7 +154,9 @@ std::vector<BodyTrees> build_scene_trees(const Scene& scene, std::vector<LoadedB
   const bool outside_is_known =
       std::all_of(bodies.begin(), bodies.end(), [](const auto& b) { return b.outside_is_known; });
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (needs.contacts()) {
+    if (scene.contact) {
+      trees[i].contact = builder.wall_tree(bodies[i]);
+    } else if (needs.contacts()) {
       trees[i].contact = builder.contact_tree(bodies[i], needs.triangles);
     } else {
       notes.skip(fmt::format("{} tree", bodies[i].named->name),

@@ -274,6 +274,12 @@ void TableReader::fail_value(std::string_view key, std::string_view what) const 
        fmt::format("give {}", what));
 }
 
+void TableReader::refuse_old(std::string_view key, std::string_view now,
+                             std::string_view remedy) const {
+  if (entry(key) == nullptr) return;
+  fail(key, fmt::format("'{}' in {} {}", key, name(), now), remedy);
+}
+
 void TableReader::refuse_misspelt() const {
   for (const TomlEntry& each : table_.entries) {
     if (known(each.key) != nullptr) continue;

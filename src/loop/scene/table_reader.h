@@ -79,6 +79,9 @@ class TableReader {
                          std::string_view remedy) const;
   /// Returns the place of a key for messages: "job.toml:5: 'file' in [fixed]".
   [[nodiscard]] std::string place(std::string_view key) const;
+  /// Throws if the table has a key that a scene of an earlier version had. `now` completes the
+  /// sentence that begins with the key. The key stays unknown.
+  void refuse_old(std::string_view key, std::string_view now, std::string_view remedy) const;
   /// Throws for a missing key, or for a key that looks like a misspelling of it.
   [[noreturn]] void fail_missing(std::string_view key, std::string_view what) const;
   /// Throws for a key that was not asked for, if it looks like a missing one.

@@ -32,7 +32,7 @@ inline constexpr DeviceMechanics kDeviceUnderTest{.damping = 2, .angular_damping
 }
 
 /// A ball of radius 5 mm over a floor, z = 0, between two walls, x = -12 and x = 12, and 30 mm
-/// along y a loose ball of radius 4 over the floor. The device rests; all effects at contacts.
+/// along y a loose ball of radius 4 over the floor. The device rests; springs and damping.
 [[nodiscard]] inline Scene five_bodies() {
   Scene scene{.unit = 1e-3};
   scene.fixed = {box_body("floor", {-30, -30, -8}, {30, 60, 0}),
@@ -41,8 +41,7 @@ inline constexpr DeviceMechanics kDeviceUnderTest{.damping = 2, .angular_damping
                  ball_body("loose", {0, 30, 5.5}, 4)};
   scene.fixed.back().attachable = true;
   scene.held = {ball_body("tool", {0, 0, 6}, 5)};
-  scene.contact = ContactSettings{};
-  scene.friction = FrictionSettings{};
+  scene.springs = SpringsSettings{};
   scene.damping = DampingSettings{};
   scene.device = NullSettings{kDeviceUnderTest};
   return scene;

@@ -1,4 +1,4 @@
-// A fixed body that follows a script pushes the tool, and drags it along by friction.
+// A fixed body that follows a script pushes the tool.
 
 #include <gtest/gtest.h>
 
@@ -19,8 +19,7 @@ Scene driven(const Vector3d& way) {
   scene.fixed.front().script = {{0, {}}, {1, {Eigen::Matrix3d::Identity(), 1e-3 * way}}};
   scene.held = {ball_body("tool", {0, 0, 6}, 5)};
   scene.device = NullSettings{kDeviceUnderTest};
-  scene.contact = ContactSettings{};
-  scene.friction = FrictionSettings{.static_coefficient = 1, .dynamic_coefficient = 0.8};
+  scene.springs = SpringsSettings{};
   return scene;
 }
 
@@ -32,38 +31,6 @@ TEST(DrivenBody, PushesTheTool) {
   EXPECT_GT(tick.wrench[2], 0.5);
   EXPECT_GT(built.simulation->tool_pose().translation.z() - start.translation.z(), 1e-3);
   EXPECT_NEAR(built.simulation->body_pose(0).translation.z(), 0, 1e-12) << "4 mm up from -4 mm";
-}
-
-// Pressed on the plate, the tool sticks to it: the hand is drawn along as far as friction goes.
-TEST(DrivenBody, DragsWhatSticksToIt) {
-  for (const double way : {2.0, -2.0}) {
-    const BuiltScene built = build_scene(driven({way, 0, 0}));
-    const Placement start = built.simulation->tool_pose();
-    const Placement pressed = moved_by(start, {0, 0, -3});
-    Tick tick{};
-    for (int i = 0; i < 1000; ++i) {
-      tick = built.simulation->tick(moved_by(start, {0, 0, -3 * std::min(1.0, i / 100.0)}));
-    }
-    EXPECT_GT(tick.wrench[2], 1);
-    const double dragged = tick.tool.translation.x() - pressed.translation.x();
-    EXPECT_GT(dragged * way, 0) << "with the plate";
-    EXPECT_GT(std::abs(dragged), 5e-4);
-    EXPECT_GT(tick.wrench[0] * way, 0) << "the hand is drawn along";
-    EXPECT_LE(std::abs(tick.wrench[0]), 1.02 * tick.wrench[2]) << "no more than friction holds";
-  }
-}
-
-// It sticks without creeping: after the plate has come to rest the tool rests too.
-TEST(DrivenBody, HoldsStillWhenItRests) {
-  const BuiltScene built = build_scene(driven({0.5, 0, 0}));
-  const Placement start = built.simulation->tool_pose();
-  Tick tick{};
-  for (int i = 0; i < 2000; ++i) {
-    tick = built.simulation->tick(moved_by(start, {0, 0, -3 * std::min(1.0, i / 100.0)}));
-  }
-  const Vector3d before = tick.tool.translation;
-  for (int i = 0; i < 1000; ++i) tick = built.simulation->tick(moved_by(start, {0, 0, -3}));
-  EXPECT_LT((tick.tool.translation - before).norm(), 1e-7);
 }
 
 // While an answer is missing the tool is held, and the plate waits for it.

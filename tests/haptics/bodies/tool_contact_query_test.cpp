@@ -139,23 +139,54 @@ TEST(ToolContactQuery, ItsPointsComeToTheWrenchOfAllPairs) {
     const ToolContacts contacts = Scenery{placements()[static_cast<std::size_t>(i % 7)]}.contacts(
         pressed(random.uniform(0.05, 0.5), random.rotation()));
     Vector6 sum = Vector6::Zero();
-    double shares = 0;
+    double fractions = 0;
     for (const ToolContact& point : contacts.points()) {
       sum +=
           point.stiffness_fraction * point.depth * six(point.normal, point.arm.cross(point.normal));
-      shares += point.stiffness_fraction;
+      fractions += point.stiffness_fraction;
     }
     const double force = contacts.spring.head<3>().norm();
     worst_force = std::max(worst_force, (sum - contacts.spring).head<3>().norm() / force);
     worst_torque = std::max(worst_torque,
                             (sum - contacts.spring).tail<3>().norm() / (kUnit * kRadius * force));
-    // Ten pairs' stiffness at most.
-    EXPECT_NEAR(shares, std::min(contacts.count, 10.0), 1e-9 * contacts.count);
+    // Ten pairs have the whole stiffness.
+    EXPECT_NEAR(fractions, std::min(0.1 * contacts.count, 1.0), 1e-9 * contacts.count);
   }
   RecordProperty("worst_force", std::to_string(worst_force));
   RecordProperty("worst_torque", std::to_string(worst_torque));
   EXPECT_LT(worst_force, 0.02);
   EXPECT_LT(worst_torque, 0.02);
+}
+
+// A block of 6 mm by 6 mm on a larger one, 0.1 mm deep.
+ToolContacts of_blocks(double voxel_size, double full_area) {
+  const SphereTree fixed = build_tree(box({-10, -10, -4}, {10, 10, 0}), {.voxel_size = voxel_size});
+  const SphereTree held = build_tree(box({-3, -3, -0.1}, {3, 3, 3}), {.voxel_size = voxel_size});
+  ToolContactQuery query(fixed, held, {kUnit, {}, held.origin()},
+                         {.policy = SpherePolicy::kSlab,
+                          .margin = 0,
+                          .full_area = full_area / (voxel_size * voxel_size)});
+  ToolContacts contacts;
+  const Placement tool{Eigen::Matrix3d::Identity(), kUnit * held.origin()};
+  EXPECT_TRUE(query.find(tool, {}, contacts).complete);
+  return contacts;
+}
+
+// The spring of a stiffness of 1 N/m is the mean depth, whatever the voxel size.
+TEST(ToolContactQuery, Stiffness_DoesNotDependOnTheVoxelSize) {
+  for (const double voxel_size : {0.2, 0.4, 0.8}) {
+    const double depth = of_blocks(voxel_size, 1).spring[2] / kUnit;
+    EXPECT_NEAR(depth, 0.1, 0.02) << voxel_size;
+  }
+}
+
+// Below the full area the spring is in proportion to the area of the contact.
+TEST(ToolContactQuery, Stiffness_FollowsTheAreaOfASmallContact) {
+  const ToolContacts whole = of_blocks(0.4, 1), part = of_blocks(0.4, 400);
+  const double area = 0.4 * 0.4 * whole.count;  // mm²
+  ASSERT_GT(area, 1);
+  ASSERT_LT(area, 400);
+  EXPECT_NEAR(part.spring[2], area / 400 * whole.spring[2], 1e-9 * whole.spring[2]);
 }
 
 TEST(ToolContactQuery, KeepsWhatItKnewWhereTheAnswerIsNotComplete) {

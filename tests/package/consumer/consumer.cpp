@@ -128,7 +128,7 @@ ist::BuiltScene scene() {
   scene.held[0].translation.z() = kCells / 2 + 2.5;
   for (ist::SceneBody* body : {&scene.fixed[0], &scene.held[0]}) body->voxel_size = 0.5;
   scene.device = ist::NullSettings{{.damping = 2, .angular_damping = 2e-3}};
-  scene.contact = ist::ContactSettings{};
+  scene.springs = ist::SpringsSettings{};
   return ist::build_scene(scene);
 }
 

@@ -119,6 +119,9 @@ TEST_P(RecordedHand, IsAnsweredAsByAFreshQuery) {
   IST_SLOW();
   ist::Scene file = read_scene(std::string(IST_SCENES) + "/jaws.toml");
   file.workers = 1;
+  file.contact.reset();
+  file.friction.reset();
+  file.springs = SpringsSettings{};
   file.fixed.front().spheres = file.held.front().spheres = GetParam();
   BuiltScene built = build_scene(file);
   const BodyFrames frames{file.unit,

@@ -70,6 +70,26 @@ NearPair points_of(const ClosestSide& a, const ClosestSide& b, TrianglePair tria
   return near_pair(triangles, tried.square, edge_point(a, i, tried.first), corner_point(b, j));
 }
 
+// The corners and edges of a triangle that are no farther from the plane of a face than `enough`,
+// with room for rounding. The others have no near part.
+struct NearSides {
+  bool corner[3], edge[3];
+
+  NearSides(const ClosestSide& t, const ClosestSide& face, double enough) {
+    constexpr double kRounding = 1 + 0x1p-20;
+    double height[3];
+    const double most = (kRounding * enough) * std::sqrt(face.area);
+    for (std::size_t k = 0; k < 3; ++k) {
+      height[k] = dot(t.corner[k] - face.corner[0], face.normal);
+      corner[k] = !face.flat || !(std::abs(height[k]) > most);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double a = height[k], b = height[(k + 1) % 3];
+      edge[k] = !face.flat || !((a > most && b > most) || (a < -most && b < -most));
+    }
+  }
+};
+
 // A point in which an edge meets a plane, and how deep it lies in the triangle of that plane, as a
 // part of its size.
 struct Crossing {
@@ -167,13 +187,26 @@ std::size_t near_parts(const TriangleCorners& a, const TriangleCorners& b, Trian
     for (; at != out.begin() && pair.distance < (at - 1)->distance; --at) *at = *(at - 1);
     *at = pair;
   };
-  for (std::size_t k = 0; k < 6; ++k) {
-    const ClosestTry tried = k < Parts::kFaceToCorner ? try_face(of_a.corner[k], of_b)
-                                                      : try_face(of_b.corner[k - 3], of_a);
-    if (tried.square < HUGE_VAL) add(k);
+  const NearSides near_a(of_a, of_b, enough), near_b(of_b, of_a, enough);
+  double to_edge[3][3], to_corner[3][3];  // squares, from corner i and from edge i of the first
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (near_a.corner[i] && try_face(of_a.corner[i], of_b).square < HUGE_VAL) {
+      add(Parts::kCornerToFace + i);
+    }
+    for (std::size_t j = 0; j < 3; ++j) {
+      to_edge[i][j] = near_a.corner[i] ? try_edge(of_a.corner[i], of_b, j).square : HUGE_VAL;
+      to_corner[i][j] = near_b.corner[j] ? try_edge(of_b.corner[j], of_a, i).square : HUGE_VAL;
+    }
+  }
+  for (std::size_t j = 0; j < 3; ++j) {
+    if (near_b.corner[j] && try_face(of_b.corner[j], of_a).square < HUGE_VAL) {
+      add(Parts::kFaceToCorner + j);
+    }
   }
   for (std::size_t i = 0; i < 3; ++i) {
+    if (!near_a.edge[i]) continue;
     for (std::size_t j = 0; j < 3; ++j) {
+      if (!near_b.edge[j]) continue;
       // The closest points of two edges lie inside both, or at an end of one.
       const std::size_t next_i = (i + 1) % 3, next_j = (j + 1) % 3;
       std::size_t best = Parts::kEdges + 3 * i + j;
@@ -183,11 +216,11 @@ std::size_t near_parts(const TriangleCorners& a, const TriangleCorners& b, Trian
         square = tried;
         best = parts;
       };
-      take(Parts::kCornerToEdge + 3 * i + j, try_edge(of_a.corner[i], of_b, j).square);
-      take(Parts::kCornerToEdge + 3 * next_i + j, try_edge(of_a.corner[next_i], of_b, j).square);
-      take(Parts::kEdgeToCorner + 3 * i + j, try_edge(of_b.corner[j], of_a, i).square);
-      take(Parts::kEdgeToCorner + 3 * i + next_j, try_edge(of_b.corner[next_j], of_a, i).square);
-      add(best);
+      take(Parts::kCornerToEdge + 3 * i + j, to_edge[i][j]);
+      take(Parts::kCornerToEdge + 3 * next_i + j, to_edge[next_i][j]);
+      take(Parts::kEdgeToCorner + 3 * i + j, to_corner[i][j]);
+      take(Parts::kEdgeToCorner + 3 * i + next_j, to_corner[i][next_j]);
+      if (square < HUGE_VAL) add(best);
     }
   }
   return count;

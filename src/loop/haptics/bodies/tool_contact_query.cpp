@@ -9,8 +9,6 @@
 namespace ist {
 namespace {
 
-// The most whole leaf pairs that have their full stiffness each (ToolContact::stiffness_fraction).
-constexpr double kFullPairs = 10;
 // Of ContactRates.
 constexpr double kRounding = 0x1p-16;
 
@@ -45,6 +43,7 @@ ToolContactQuery::ToolContactQuery(const SphereTree& fixed, const SphereTree& he
                                    const BodyFrames& frames, const ToolContactOptions& options)
     : frames_(frames),
       area_(fixed.voxel_size() * held.voxel_size()),
+      full_area_(options.full_area * area_),
       size_(0.5 * (fixed.voxel_size() + held.voxel_size())),
       fixed_radius_(fixed.bounding_radius()),
       held_origin_(held.origin()),
@@ -70,9 +69,8 @@ QueryResult ToolContactQuery::find(const Placement& tool, const Budget& budget,
 
 void ToolContactQuery::add_to(ToolContacts& contacts, const Placement& tool) const noexcept {
   const ContactSums& sums = manifold_.sums();
-  const double count = sums.weight / area_;
-  const double fraction = 1 / (area_ * std::max(1.0, count / kFullPairs));
-  contacts.count += count;
+  const double fraction = 1 / std::max(sums.weight, full_area_);
+  contacts.count += sums.weight / area_;
 
   const Eigen::Matrix3d& turn = frames_.fixed.rotation;
   const Eigen::Vector3d arm = frames_.to_scene(sums.about) - tool.translation;
@@ -88,8 +86,8 @@ void ToolContactQuery::add_to(ToolContacts& contacts, const Placement& tool) con
   }
 }
 
-// The terms of a leaf pair are those of the manifold's rates, divided by the number of whole pairs
-// that share the stiffness, which changes too; a torque turns about the tool's origin.
+// Divides the manifold's rates of a leaf pair by the area that shares the stiffness. That area
+// changes too. A torque turns about the tool's origin.
 void ToolContactQuery::add_rates(SpringRates& rates, double fraction) const noexcept {
   const ContactRates& of_pair = manifold_.rates();
   const double from_origin = std::sqrt((held_origin_ - frames_.tool_origin).squaredNorm());

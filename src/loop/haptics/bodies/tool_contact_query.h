@@ -23,8 +23,9 @@ struct BodyFrames {
 /// Options of a ToolContactQuery. Lengths are in voxels; see ManifoldOptions.
 struct ToolContactOptions {
   SpherePolicy policy = SpherePolicy::kTable;
-  double margin = 0.25;               ///< the distance at which contacts begin
-  double reach = 0.375;               ///< leaf pairs count whose bounds are no farther apart
+  double margin = 0.25;               ///< contacts begin at this distance
+  double full_area = 10;              ///< of a contact with the whole stiffness, in leaf pairs
+  double reach = 0.375;               ///< the greatest distance of the bounds of a leaf pair
   int workers = 1;                    ///< 2: a second thread helps the search
   std::size_t front_pairs = 1 << 16;  ///< the most leaf pairs kept from tick to tick
   std::chrono::nanoseconds period = std::chrono::milliseconds(1);  ///< from one query to the next
@@ -38,12 +39,12 @@ class ToolContactQuery {
   ToolContactQuery(const SphereTree& fixed, const SphereTree& held, const BodyFrames& frames,
                    const ToolContactOptions& options);
 
-  /// Finds the contacts at a pose of the tool, and adds them to `contacts` as those of the pair
-  /// `number`. Leaves `contacts` unchanged unless the result is complete. Where the tool is apart,
-  /// the distance of the result is a clearance, as far as it is known.
+  /// Finds the contacts at a pose of the tool, and adds them to `contacts` as the pair `number`.
+  /// Leaves `contacts` unchanged unless the result is complete. If the bodies are apart, the
+  /// distance of the result is a clearance, as far as it is known.
   [[nodiscard]] QueryResult find(const Placement& tool, const Budget& budget,
                                  ToolContacts& contacts, std::size_t number = 0) noexcept;
-  /// Says where the bodies are from now on.
+  /// Moves the bodies.
   void place(const BodyFrames& frames) noexcept { frames_ = frames; }
   [[nodiscard]] std::size_t bytes() const noexcept { return query_.bytes() + manifold_.bytes(); }
   /// Returns the bytes that a query of these trees reserves: what bytes() is of it. Throws as Query
@@ -57,6 +58,7 @@ class ToolContactQuery {
 
   BodyFrames frames_;
   double area_;                  // of a whole leaf pair, mesh units squared
+  double full_area_;             // of a contact with the whole stiffness, mesh units squared
   double size_;                  // the mean of the two voxel sizes, mesh units
   double fixed_radius_;          // bounds the fixed body round its frame's origin, mesh units
   Eigen::Vector3d held_origin_;  // of the held tree's frame, held mesh coordinates

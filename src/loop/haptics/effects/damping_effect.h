@@ -9,7 +9,7 @@ namespace ist {
 ///     f = damping · stiffness_fraction · max(0, -n · u / dt) · n
 ///
 /// with the displacement u of the point from the fixed body, by `motion` in `dt` seconds. A point
-/// that recedes or slides has no force. The force is 0 without motion, and the fraction fades where
+/// that recedes or slides has no force. The force is 0 without motion. The fraction is 0 when
 /// a point appears or vanishes, so the wrench is continuous. Precondition: dt > 0. Cost: some 150
 /// flops a point.
 inline void brake(const ToolContacts& contacts, double damping, double dt, const Vector6& motion,
@@ -30,9 +30,9 @@ inline void brake(const ToolContacts& contacts, double damping, double dt, const
 ///
 ///     f = b · stiffness_fraction · max(0, -n · u / dt) · n
 ///
-/// with the displacement u of the point in a tick of dt seconds (brake). The force does not grow
-/// with the depth: the fraction is 0 where a contact begins, which makes the wrench continuous, and
-/// a damper that grew with the depth would be weakest at the impact.
+/// with the damping b of a whole contact and the displacement u of the point in a tick of dt
+/// seconds (brake). The force does not grow with the depth, since such a damper would be weakest at
+/// the impact. The wrench is continuous, since the fraction is 0 when a contact begins.
 ///
 /// Needs: normals, velocity. Source: the damper of K. H. Hunt and F. R. E. Crossley, Coefficient of
 /// restitution interpreted as damping in vibroimpact, ASME J. Applied Mechanics 42(2), 1975, with

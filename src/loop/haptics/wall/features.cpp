@@ -1,7 +1,6 @@
 #include "loop/haptics/wall/features.h"
 
 #include <array>
-#include <bit>
 #include <cmath>
 
 #include "ist/base/ordered_vector.h"
@@ -29,8 +28,6 @@ std::uint64_t number_of(const SurfacePart& part) noexcept {
 
 }  // namespace
 
-FeatureList::KeySet::KeySet(std::size_t room) : slots_(std::bit_ceil(4 * room + 4)) {}
-
 bool FeatureList::KeySet::add(const Key& key) noexcept {
   const std::size_t mask = slots_.size() - 1;
   for (std::size_t at = mixed(key.first ^ mixed(key.second)) & mask;; at = (at + 1) & mask) {
@@ -50,8 +47,6 @@ void FeatureList::KeySet::clear() noexcept {
   for (Slot& slot : slots_) slot.stamp = 0;
   stamp_ = 1;
 }
-
-std::size_t FeatureList::KeySet::bytes() const noexcept { return slots_.capacity() * sizeof(Slot); }
 
 FeatureList::FeatureList(const Surface& fixed, const Surface& moving, std::size_t room)
     : fixed_(fixed),
@@ -134,6 +129,10 @@ bool FeatureList::add(const NearPair& near, const SurfacePart& fixed, const Surf
   features_.push_back(
       {fixed, moving, near.triangles, near.fixed_point, near.moving_point, normal, near.distance});
   return true;
+}
+
+std::size_t FeatureList::bytes_for(std::size_t room) noexcept {
+  return room * sizeof(Feature) + KeySet::bytes_for(4 * room) + KeySet::bytes_for(room);
 }
 
 std::size_t FeatureList::bytes() const noexcept {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -56,6 +57,8 @@ class FeatureList {
   [[nodiscard]] bool is_thinned() const noexcept { return thinned_; }
   void clear() noexcept;
   [[nodiscard]] std::size_t bytes() const noexcept;
+  /// Returns the bytes that a list with so much room reserves.
+  [[nodiscard]] static std::size_t bytes_for(std::size_t room) noexcept;
 
  private:
   struct Key {
@@ -65,14 +68,20 @@ class FeatureList {
   // Keys that were added since clear().
   class KeySet {
    public:
-    explicit KeySet(std::size_t room);
+    explicit KeySet(std::size_t room) : slots_(slots_for(room)) {}
     /// Adds a key. Returns false if it is there already.
     bool add(const Key& key) noexcept;
     [[nodiscard]] bool is_full() const noexcept { return 2 * count_ >= slots_.size(); }
     void clear() noexcept;
-    [[nodiscard]] std::size_t bytes() const noexcept;
+    [[nodiscard]] std::size_t bytes() const noexcept { return slots_.capacity() * sizeof(Slot); }
+    [[nodiscard]] static std::size_t bytes_for(std::size_t room) noexcept {
+      return slots_for(room) * sizeof(Slot);
+    }
 
    private:
+    [[nodiscard]] static std::size_t slots_for(std::size_t room) noexcept {
+      return std::bit_ceil(4 * room + 4);
+    }
     struct Slot {
       Key key;
       std::uint32_t stamp = 0;

@@ -8,6 +8,7 @@
 #include "ist/base/rigid_move.h"
 #include "ist/measure/require.h"
 #include "ist/mesh/bounding_box.h"
+#include "ist/query/query_state.h"
 #include "ist/query/triangles/triangle_distance.h"
 #include "ist/query/triangles/triangle_visitors.h"
 #include "ist/tree/tree_parts.h"
@@ -119,6 +120,12 @@ bool WallPair::is_free(const Eigen::Isometry3d& pose, double way, const Budget& 
     if (triangles_meet(first, second)) return false;
   }
   return true;
+}
+
+std::size_t WallPair::bytes_for(const SphereTree& fixed, const SphereTree& held,
+                                const Options& options) {
+  return detail::QueryState::bytes_for(fixed, held, of_query(options)) +
+         kNearPairs * sizeof(NearPair) + FeatureList::bytes_for(options.features);
 }
 
 std::size_t WallPair::bytes() const noexcept {

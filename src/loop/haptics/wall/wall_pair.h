@@ -77,6 +77,9 @@ class WallPair {
                              const Budget& budget) noexcept;
 
   [[nodiscard]] std::size_t bytes() const noexcept;
+  /// Returns the bytes that a pair of these trees reserves.
+  [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed, const SphereTree& held,
+                                             const Options& options);
 
  private:
   std::shared_ptr<const WallBody> fixed_, held_;

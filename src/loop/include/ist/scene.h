@@ -64,14 +64,18 @@ struct SceneBody {
   std::string name = {};
   /// A mesh file, a tree file or a shape.
   std::variant<std::filesystem::path, BuiltInShape> source = {};
-  std::optional<double> voxel_size = {};     ///< required unless the source is a tree
+  /// For `springs` and for effects of a program in a scene without `contact`: required then unless
+  /// the source is a tree. No other effect builds these voxels.
+  std::optional<double> voxel_size = {};
   std::optional<SpherePolicy> spheres = {};  ///< by default the tightest that both bodies have
   bool trust_normals = false;  ///< contact forces even if the mesh is not closed and consistent
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< from mesh to scene
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();   ///< of the mesh's origin, scene axes
   bool attachable = false;                                 ///< the hand may take it and release it
-  /// Of a fixed body: its motions from that place, as those of the tool; empty: it rests. It moves
-  /// by half a voxel a tick at most, rests after the last waypoint, and is not attachable.
+  /// Of a fixed body: its motions from that place, as those of the tool, but about the middle of
+  /// its own box; empty: it rests. It rests after the last waypoint, and is not attachable. With
+  /// `springs` it moves by half a voxel a tick at most. With `contact` it pushes the tool, and waits
+  /// if the tool cannot yield.
   std::vector<Waypoint> script = {};
   std::filesystem::path script_file = {};  ///< from which `script` was read; empty otherwise
 };
@@ -103,9 +107,9 @@ struct ScriptSettings {
   std::vector<Waypoint> plan = {};  ///< at least one waypoint
 };
 
-/// The content of a scene file, or a scene made by a program. SI but for the bodies. Poses of the
-/// tool are motions of the held bodies from their places in the scene: a turn about the centre of
-/// the first one's root cube, then a translation along scene axes.
+/// The content of a scene file, or a scene made by a program. SI but for the bodies and `contact`.
+/// Poses of the tool are motions of the held bodies from their places in the scene: a turn about
+/// the centre of the first one's root cube, then a translation along scene axes.
 struct Scene {
   std::filesystem::path file = {};                       ///< for messages
   std::string text = {};                                 ///< of `file`; empty without a file
@@ -121,13 +125,17 @@ struct Scene {
   std::vector<SceneChange> changes = {};  ///< by ascending time
   /// The axis, of unit length, along which the held body is moved until it is free.
   std::optional<Eigen::Vector3d> open = {};
+  /// The tool's origin in mesh coordinates of the first held body. By default the middle of the
+  /// box round that mesh.
+  std::optional<Eigen::Vector3d> origin = {};
   std::variant<NullSettings, ScriptSettings, HandSettings> device = {};  ///< by default it rests
   CouplingSettings coupling = {};  ///< between device and tool
   SafetySettings safety = {};      ///< limits of the wrench on the hand
 
-  std::optional<ContactSettings> contact = {};      ///< absent: no contact forces
-  std::optional<FrictionSettings> friction = {};    ///< acts at contacts, as damping does
-  std::optional<DampingSettings> damping = {};      ///< absent: no damping
+  std::optional<ContactSettings> contact = {};      ///< absent: nothing keeps the bodies apart
+  std::optional<SpringsSettings> springs = {};      ///< in place of `contact`, not beside it
+  std::optional<FrictionSettings> friction = {};    ///< needs `contact`
+  std::optional<DampingSettings> damping = {};      ///< needs `contact` or `springs`
   std::optional<ProximitySettings> proximity = {};  ///< absent: the tool is not slowed
   std::optional<SceneGravity> gravity = {};         ///< absent: the held body weighs nothing
   std::optional<SnapSettings> snap = {};            ///< its pose is a motion

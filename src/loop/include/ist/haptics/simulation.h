@@ -113,9 +113,8 @@ struct EffectTime {
 /// device poses and equal results of the queries give equal bits. Made by build_scene().
 ///
 /// Each body is fixed or held; held bodies move as one with the tool. Contacts are those of every
-/// pair of a fixed and a held body. Their wrenches are summed about the tool's origin; friction
-/// sticks pair by pair. A body is named by its number: the fixed ones of the scene, then the held
-/// ones.
+/// pair of a fixed and a held body. Their wrenches are summed about the tool's origin. A body is
+/// named by its number: the fixed ones of the scene, then the held ones.
 ///
 /// A tick queries the contacts at the tool's pose, moves the tool to the balance of coupling and
 /// effects by at most one voxel, and returns the coupling's wrench. If the contacts are incomplete

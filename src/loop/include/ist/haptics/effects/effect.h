@@ -15,10 +15,11 @@ namespace ist {
 struct ToolContact {
   Eigen::Vector3d arm;     ///< from the tool's origin to the point
   Eigen::Vector3d normal;  ///< of unit length, from the fixed body to the held one
-  double depth;            ///< at least 0, measured from the depth at which contacts begin
-  /// The point's fraction of a contact's stiffness. A point of one whole leaf pair has 1. More than
-  /// 10 whole pairs share the stiffness of 10, so that a broad contact is no stiffer than the loop
-  /// can bear (McNeely et al. 1999, section 4.4).
+  double depth;            ///< at least 0; 0 where contacts begin
+  /// The point's part of the stiffness and the damping of its contact, 0 to 1: the point's area
+  /// divided by the area of all points of its pair of bodies, or by SpringsSettings::full_area if
+  /// that is more. Many points share one stiffness. So a broad contact is as stiff as a small one
+  /// (McNeely et al. 1999, section 4.4).
   double stiffness_fraction;
 
   /// The displacement of the point for a small motion of the tool, metres.
@@ -78,7 +79,7 @@ class ToolContacts {
   [[nodiscard]] std::span<const ToolContact> points(const ContactPair& pair) const noexcept {
     return points().subspan(pair.begin, pair.end - pair.begin);
   }
-  /// The pairs, by ascending number: all that were asked, with points or without.
+  /// The pairs of this tick, with points or without, by ascending number.
   [[nodiscard]] std::span<ContactPair> pairs() noexcept { return pairs_; }
   /// The same, to read.
   [[nodiscard]] std::span<const ContactPair> pairs() const noexcept { return pairs_; }
@@ -134,7 +135,7 @@ struct EffectNeeds {
 
 /// The input of effects at a tick, before the tool moves: SI, scene axes.
 struct EffectInput {
-  const Placement& tool;         ///< the pose at which the contacts were found
+  const Placement& tool;         ///< the pose of the contacts
   const ToolContacts& contacts;  ///< empty if no effect needs contacts
   /// Points near the fixed bodies, without a depth; empty if no effect needs proximity.
   const ToolContacts& proximity;
@@ -173,22 +174,44 @@ class IST_API Effect {
   virtual void reset() noexcept {}
 };
 
-/// `contact`: springs push the surfaces apart.
+/// `contact`: the tool never intersects a fixed body. Lengths are in the scene's unit. A length of
+/// 0 means its default, a fraction of the diagonal of the tool's box.
 struct ContactSettings {
-  double stiffness = 2000;  ///< of one whole leaf pair, N/m; a contact has at most 10 times as much
-  double margin = 0.25;     ///< distance at which springs begin, in voxels, from 0 to 0.5
+  double skin = 0;   ///< gap that a contact keeps; by default 1/32,000 of the diagonal
+  double trust = 0;  ///< longest way of the held surface in a step near a fixed body; by default
+                     ///< 1/8,000 of the diagonal
+  int steps = 3;     ///< of a tick, at most; 1 to 10
 };
+
+/// `friction`: surfaces in contact stick, then slide. It is a part of `contact`.
+struct FrictionSettings {
+  double coefficient = 0.3;  ///< a contact slides at this ratio of tangential to normal force
+};
+
+/// `springs`: springs at pairs of voxels push the surfaces apart. They give way under load. Beyond
+/// breaking_force() the tool passes through.
+struct SpringsSettings {
+  double stiffness = 40000;  ///< of a whole contact, N/m, whatever the voxel size
+  double margin = 0;         ///< springs begin at this distance, m; at most half a voxel
+  /// A contact of this area or more has its whole stiffness, m². A smaller contact has a part of
+  /// the stiffness in proportion to its area. 0 means (d / 260)², with the diagonal d of the tool's
+  /// box: 0.4 mm² for a human jaw.
+  double full_area = 0;
+  bool allow_breaking = false;  ///< a wall may break at less force than the coupling exerts
+};
+
+/// Returns the greatest force that the wall of `springs` bears, N: stiffness * half a voxel, since
+/// pairs of voxels are about half a voxel deep in the mean before the tool passes through.
+/// Measured: a ball passes at 0.86 to 0.95 of it, the flat face of a block at 1.2 to 1.6.
+/// @param voxel_size the mean of the two bodies' voxel sizes, m
+[[nodiscard]] constexpr double breaking_force(const SpringsSettings& settings,
+                                              double voxel_size) noexcept {
+  return settings.stiffness * 0.5 * voxel_size;
+}
 
 /// `damping`: surfaces in contact lose energy as they approach.
 struct DampingSettings {
-  double damping = 1;  ///< of one whole leaf pair, N s/m; a contact has at most 10 times as much
-};
-
-/// `friction`: surfaces in contact stick, then slide.
-struct FrictionSettings {
-  double static_coefficient = 0.3;   ///< µ_s: the largest ratio of tangential to normal force
-  double dynamic_coefficient = 0.2;  ///< µ_d <= µ_s: that ratio while the contact slides
-  double stiffness = 1000;           ///< tangential, of one whole leaf pair that sticks, N/m
+  double damping = 10;  ///< of a whole contact, N s/m
 };
 
 /// `proximity`: the tool is slowed before the surfaces meet.

@@ -1,15 +1,15 @@
-#include "loop/haptics/effects/contact_effect.h"
+#include "loop/haptics/effects/springs_effect.h"
 
 #include <algorithm>
 
 namespace ist {
 
-double ContactEffect::force(const ToolContact& point, const Vector6& motion) const noexcept {
+double SpringsEffect::force(const ToolContact& point, const Vector6& motion) const noexcept {
   const double depth = point.depth - point.normal.dot(point.moved(motion));
   return settings_.stiffness * point.stiffness_fraction * std::max(0.0, depth);
 }
 
-void ContactEffect::respond(const EffectInput& input, const Vector6& motion,
+void SpringsEffect::respond(const EffectInput& input, const Vector6& motion,
                             Response& response) const noexcept {
   response.wrench += settings_.stiffness * input.contacts.spring;
   for (const ContactPair& pair : input.contacts.pairs()) {

@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "haptics/effects/effect_case.h"
-#include "loop/haptics/effects/contact_effect.h"
 #include "loop/haptics/effects/damping_effect.h"
 #include "loop/haptics/effects/proximity_effect.h"
+#include "loop/haptics/effects/springs_effect.h"
 #include "support/effort.h"
 
 namespace ist::test {
@@ -12,69 +12,69 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kStiffness = 800;
-const ContactEffect kContact({kStiffness, 0.5});
+const SpringsEffect kSprings({.stiffness = kStiffness});
 
-TEST(ContactEffect, NeedsNormalsAndDepth) {
-  EXPECT_EQ(kContact.name(), "contact");
-  EXPECT_EQ(asked(kContact.needs()), (std::array{true, true, false, false, false}));
-  EXPECT_TRUE(kContact.needs().contacts());
+TEST(SpringsEffect, NeedsNormalsAndDepth) {
+  EXPECT_EQ(kSprings.name(), "springs");
+  EXPECT_EQ(asked(kSprings.needs()), (std::array{true, true, false, false, false}));
+  EXPECT_TRUE(kSprings.needs().contacts());
 }
 
-TEST(ContactEffect, IsASpringAlongTheNormalWithItsTorque) {
+TEST(SpringsEffect, IsASpringAlongTheNormalWithItsTorque) {
   EffectCase c;
   c.add_contact({{0.01, 0.02, 0}, {0, 0, 1}, 1e-4, 0.5});
   const double at_rest = kStiffness * 0.5 * 1e-4;
   Vector6 expected = six({0, 0, at_rest}, {0.02 * at_rest, -0.01 * at_rest, 0});
-  EXPECT_LE((respond(kContact, c).wrench - expected).norm(), 1e-16);
+  EXPECT_LE((respond(kSprings, c).wrench - expected).norm(), 1e-16);
 
   // Pressed by 30 µm more, by going there or by turning about x with an arm of 20 mm.
-  const double pressed = kStiffness * 0.5 * (1e-4 + ContactEffect::kLead * 3e-5);
+  const double pressed = kStiffness * 0.5 * (1e-4 + SpringsEffect::kLead * 3e-5);
   expected = six({0, 0, pressed}, {0.02 * pressed, -0.01 * pressed, 0});
-  EXPECT_LE((respond(kContact, c, six({0, 0, -3e-5}, {0, 0, 0})).wrench - expected).norm(), 1e-15);
-  EXPECT_LE((respond(kContact, c, six({0, 0, 0}, {-1.5e-3, 0, 0})).wrench - expected).norm(),
+  EXPECT_LE((respond(kSprings, c, six({0, 0, -3e-5}, {0, 0, 0})).wrench - expected).norm(), 1e-15);
+  EXPECT_LE((respond(kSprings, c, six({0, 0, 0}, {-1.5e-3, 0, 0})).wrench - expected).norm(),
             1e-15);
-  EXPECT_NEAR(kContact.force(c.contacts.points()[0], six({0, 0, -3e-5}, {0, 0, 0})),
+  EXPECT_NEAR(kSprings.force(c.contacts.points()[0], six({0, 0, -3e-5}, {0, 0, 0})),
               kStiffness * 0.5 * 1.3e-4, 1e-15);
   // Along the plane nothing changes.
   const Vector6 along = six({1e-3, -2e-3, 0}, {0, 0, 0.1});
-  EXPECT_LE((respond(kContact, c, along).wrench - respond(kContact, c).wrench).norm(), 1e-16);
+  EXPECT_LE((respond(kSprings, c, along).wrench - respond(kSprings, c).wrench).norm(), 1e-16);
 }
 
-TEST(ContactEffect, NeverPulls) {
+TEST(SpringsEffect, NeverPulls) {
   EffectCase c;
   c.add_contact({{0.01, 0, 0}, {0, 1, 0}, 1e-4, 1});
-  const Response off = respond(kContact, c, six({0, 2e-4, 0}, {0, 0, 0}));
+  const Response off = respond(kSprings, c, six({0, 2e-4, 0}, {0, 0, 0}));
   EXPECT_LE(off.wrench.norm(), 1e-16);
   EXPECT_EQ(off.stiffness, Matrix6::Zero());
-  EXPECT_EQ(kContact.force(c.contacts.points()[0], six({0, 2e-4, 0}, {0, 0, 0})), 0);
+  EXPECT_EQ(kSprings.force(c.contacts.points()[0], six({0, 2e-4, 0}, {0, 0, 0})), 0);
 }
 
-TEST(ContactEffect, IsTheWholeSpringAtThePoseWhateverThePointsSay) {
+TEST(SpringsEffect, IsTheWholeSpringAtThePoseWhateverThePointsSay) {
   Random random(21);
   EffectCase c = random_case(random, 5);
   c.contacts.spring += six({0.1, 0.2, 0.3}, {0.001, 0.002, 0.003});
-  EXPECT_LE((respond(kContact, c).wrench - kStiffness * c.contacts.spring).norm(), 1e-13);
+  EXPECT_LE((respond(kSprings, c).wrench - kStiffness * c.contacts.spring).norm(), 1e-13);
 }
 
-TEST(ContactEffect, AddsToWhatIsThere) {
+TEST(SpringsEffect, AddsToWhatIsThere) {
   Random random(22);
   const EffectCase c = random_case(random, 3);
   Response twice;
-  kContact.respond(c.input(), Vector6::Zero(), twice);
-  kContact.respond(c.input(), Vector6::Zero(), twice);
-  const Response once = respond(kContact, c);
+  kSprings.respond(c.input(), Vector6::Zero(), twice);
+  kSprings.respond(c.input(), Vector6::Zero(), twice);
+  const Response once = respond(kSprings, c);
   EXPECT_LE((twice.wrench - 2 * once.wrench).norm(), 1e-14);
   EXPECT_LE(difference(twice.stiffness, 2 * once.stiffness), 1e-15);
 }
 
-TEST(ContactEffect, HasTheStiffnessThatDifferencesShow) {
+TEST(SpringsEffect, HasTheStiffnessThatDifferencesShow) {
   Random random(23);
   for (int i = 0; i < samples(300); ++i) {
     const EffectCase c = random_case(random, 1 + i % 6);
     const Vector6 motion = six(random.point(-1e-6, 1e-6), random.point(-3e-5, 3e-5));
-    const Response response = respond(kContact, c, motion);
+    const Response response = respond(kSprings, c, motion);
     // The law is linear between its kinks: only rounding is left, over a step of 1e-7.
-    ASSERT_LE(difference(response.stiffness, measured_stiffness(kContact, c, motion, 1e-7)), 1e-6);
+    ASSERT_LE(difference(response.stiffness, measured_stiffness(kSprings, c, motion, 1e-7)), 1e-6);
     ASSERT_TRUE(is_symmetric_and_semidefinite(response.stiffness));
   }
 }
@@ -101,7 +101,7 @@ TEST(Response, TurnsAForceAndItsChangeIntoThoseOfTheTool) {
 
 constexpr double kDamping = 2;
 const DampingEffect kDamper({kDamping});
-const ProximityEffect kBrake({.distance = 1e-3, .damping = kDamping});
+const ProximityEffect kBrake({.distance = 1e-3, .damping = kDamping / ProximityEffect::kFullPairs});
 
 TEST(DampingEffect, NeedsNormalsAndVelocity) {
   EXPECT_EQ(kDamper.name(), "damping");
@@ -135,7 +135,7 @@ TEST(DampingEffect, HoldsBackWhatApproachesAndNothingElse) {
   }
 }
 
-TEST(DampingEffect, IsTheSameAtAnyOverlapAndFadesWithTheShare) {
+TEST(DampingEffect, IsTheSameAtAnyOverlapAndFadesWithTheFraction) {
   const Vector6 motion = six({0, 0, -1e-5}, {0, 0, 0});
   EffectCase whole, thin, faint;
   whole.add_contact({{0, 0, 0}, {0, 0, 1}, 1e-4, 1});
