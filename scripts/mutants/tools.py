@@ -37,6 +37,8 @@ MUTANTS = [
      "if ((state & kAlive) == 0) return {IST_HANDLE_FREED, nullptr};")], ["capi_test CHandles*"]),
     ("busy-query-entered", "two threads may be in one query", [("handle_table.cpp", "use == HandleUse::kAlone ? kAlone : kShared;",
      "use == HandleUse::kAlone ? kUsers : kShared;")], ["capi_test CHandles*"]),
+    ("reader-stops-the-loop", "who reads a servo's state keeps the loop out of its ticks", [("ist_c_servo.cpp",
+     "Held<const Servo, HandleUse::kShared> held", "Held<const Servo> held")], ["capi_test CServoThread*"]),
     ("removed-under-its-user", "an object freed while a call uses it is destroyed at once", [("handle_table.cpp",
      "if ((state & kUsers) == 0) empty(slot);", "empty(slot);")], ["capi_test CHandles*"]),
     ("unknown-options-ignored", "options of a newer caller are ignored silently", [("sized_struct.h", "if (size > sizeof(Struct) &&\n",
