@@ -10,7 +10,7 @@
 namespace ist::test {
 namespace {
 
-constexpr CouplingSettings kSettings{1000, 0.5, 2, 0.001, 4, 0.1};
+constexpr CouplingSettings kToolCoupling{1000, 0.5, 2, 0.001, 4, 0.1};
 
 VirtualCoupling::Stretch stretched(double x, double turn) {
   VirtualCoupling::Stretch stretch{Vector6::Zero(), Vector6::Zero(), 1e-3};
@@ -19,7 +19,7 @@ VirtualCoupling::Stretch stretched(double x, double turn) {
 }
 
 TEST(VirtualCoupling, PullsTheToolTowardsTheDevice) {
-  const VirtualCoupling coupling(kSettings);
+  const VirtualCoupling coupling(kToolCoupling);
   const Vector6 wrench = coupling.wrench(stretched(0.002, 0.01), Vector6::Zero());
   EXPECT_DOUBLE_EQ(wrench[0], 2.0);
   EXPECT_DOUBLE_EQ(wrench[5], 0.02);
@@ -28,7 +28,7 @@ TEST(VirtualCoupling, PullsTheToolTowardsTheDevice) {
 }
 
 TEST(VirtualCoupling, PullsNoHarderHoweverFarItIsStretched) {
-  const VirtualCoupling coupling(kSettings);
+  const VirtualCoupling coupling(kToolCoupling);
   for (const double far : {0.004, 0.01, 1.0, 1e6}) {
     const Vector6 wrench = coupling.wrench(stretched(-far, far * 100), Vector6::Zero());
     EXPECT_DOUBLE_EQ(wrench[0], -4.0) << far;
@@ -37,7 +37,7 @@ TEST(VirtualCoupling, PullsNoHarderHoweverFarItIsStretched) {
 }
 
 TEST(VirtualCoupling, DampsHowFastItIsStretched) {
-  const VirtualCoupling coupling(kSettings);
+  const VirtualCoupling coupling(kToolCoupling);
   VirtualCoupling::Stretch stretch = stretched(0, 0);
   stretch.device[1] = 1e-4;  // 0.1 m/s
   EXPECT_DOUBLE_EQ(coupling.wrench(stretch, Vector6::Zero())[1], 0.05);
@@ -46,7 +46,7 @@ TEST(VirtualCoupling, DampsHowFastItIsStretched) {
 }
 
 TEST(VirtualCoupling, TellsHowItsWrenchChanges) {
-  const VirtualCoupling coupling(kSettings);
+  const VirtualCoupling coupling(kToolCoupling);
   const VirtualCoupling::Stretch stretch = stretched(0.001, 0.02);
   Response response;
   coupling.respond(stretch, Vector6::Zero(), response);
@@ -61,14 +61,14 @@ TEST(VirtualCoupling, TellsHowItsWrenchChanges) {
 }
 
 constexpr CouplingSettings kSpring{1000, 0, 2, 0, 5, 0.2};
-constexpr double kDt = 1e-3, kContact = 3000;
+constexpr double kToolDt = 1e-3, kContact = 3000;
 
 // A tool that touches one plane z = const, from above, to a depth in metres.
 struct Bench {
   Placement at;
   ToolContacts contacts, proximity;
   VirtualCoupling coupling{kSpring};
-  VirtualCoupling::Stretch stretch{Vector6::Zero(), Vector6::Zero(), kDt};
+  VirtualCoupling::Stretch stretch{Vector6::Zero(), Vector6::Zero(), kToolDt};
   TimedEffects effects;
 
   explicit Bench(double depth) {
@@ -80,7 +80,7 @@ struct Bench {
     effects = TimedEffects(std::move(contact));
   }
   std::optional<Vector6> move(const Tool& tool, double part = 1) {
-    return tool.motion({at, contacts, proximity, kDt}, effects, coupling, stretch, part);
+    return tool.motion({at, contacts, proximity, kToolDt}, effects, coupling, stretch, part);
   }
 };
 

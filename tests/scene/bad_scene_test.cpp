@@ -160,7 +160,7 @@ TEST_F(BadSceneTest, LacksWhatItNeeds) {
       {"shape = \"sphere\"", "shape = \"fossa\"", 7, "[held] has no 'thickness'", "a number from"},
       {"\"sphere\"\nradius = 5", "\"fossa\"\nthickness = 5", 7, "[held] has no 'radius'",
        "a number from"},
-      {"voxel_size = 1\n", "", 3, "[fixed] has no 'voxel_size'", "in the scene's unit"},
+      {"voxel_size = 1\n", "", 3, "springs act between voxels", "give the edge of a voxel"},
       {"kind = \"hand\"\n", "", 11, "[device] has no 'kind'", "\"hand\", \"script\" or \"null\""},
       {"kind = \"hand\"", "kind = \"script\"", 11, "[device] has no 'path'", "name of a file"},
       {", move = [0, 0, -4]", "", 15, "[device.plan.2] has no 'move'", "[x, y, z], three numbers"},
@@ -361,7 +361,7 @@ TEST_F(BadSceneTest, GivesAVoxelSizeToATree) {
   options.voxel_size = 0.5;
   write_tree(build_tree(make_box({0, 0, 0}, {1, 1, 1}), options), folder_.path() / "box.ist");
   expect_refused({{"shape = \"box\"\nsize = [40, 40, 10]", "file = \"box.ist\"", 5,
-                   "the file is a tree, which has a voxel size", "take the key out"}});
+                   "the file is a tree, which has its voxels", "take the key out"}});
 }
 
 TEST_F(BadSceneTest, NamesFilesInDifferentFrames) {

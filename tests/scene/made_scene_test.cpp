@@ -144,8 +144,15 @@ TEST(MadeScene, ValuesOutOfRangeAreRefused) {
   EXPECT_EQ(refusal([](Scene& s) { s.rate = std::nan(""); }),
             "the scene's rate: it is nan: give a number from 1 to 10000 Hz");
   EXPECT_EQ(refusal([](Scene& s) { s.workers = 3; }), "the scene's workers: it is 3: give 1 or 2");
-  EXPECT_EQ(refusal([](Scene& s) { s.held.front().voxel_size.reset(); }),
-            "the scene's held.voxel_size: a shape has no voxels: give their size");
+  EXPECT_EQ(
+      refusal([](Scene& s) {
+        s.contact.reset();
+        s.friction.reset();
+        s.springs = SpringsSettings{};
+        s.held.front().voxel_size.reset();
+      }),
+      "the scene's held.voxel_size: springs act between voxels: give the edge of a voxel, or write "
+      "[effects.contact] in place of [effects.springs]");
   for (const auto& change : std::vector<std::function<void(Scene&)>>{
            [](Scene& s) { s.rate = 1e5; },
            [](Scene& s) { s.fixed.front().rotation *= 2; },
@@ -161,7 +168,6 @@ TEST(MadeScene, ValuesOutOfRangeAreRefused) {
            [](Scene& s) { s.springs = SpringsSettings{.stiffness = 1e3}; },
            [](Scene& s) { s.contact = ContactSettings{.skin = -1}; },
            [](Scene& s) { s.contact = ContactSettings{.trust = std::nan("")}; },
-           [](Scene& s) { s.contact = ContactSettings{.slack = HUGE_VAL}; },
            [](Scene& s) { s.contact = ContactSettings{.steps = 0}; },
            [](Scene& s) { s.friction = FrictionSettings{}; },
            [](Scene& s) { s.damping = DampingSettings{}; },

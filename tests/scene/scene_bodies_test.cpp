@@ -88,7 +88,8 @@ TEST_F(SceneBodies, FromATreeAreThoseOfTheMesh) {
   EXPECT_GT(of_mesh, 0.3);
   for (const char* file : {"exact.ist", "plain.ist"}) {
     const BuiltScene scene = built(with_ball("file = \"" + std::string(file) + "\"\n"));
-    EXPECT_EQ(pressed_by(scene), of_mesh) << file;
+    // Without triangles the tool's origin is the centre of the grid.
+    EXPECT_NEAR(pressed_by(scene), of_mesh, file == std::string("exact.ist") ? 0 : 0.05) << file;
     EXPECT_EQ(scene.step_limit, 0.5e-3);
   }
 }

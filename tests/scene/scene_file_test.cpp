@@ -134,7 +134,6 @@ TEST_F(SceneFile, HasDefaultsOfContactAndFriction) {
   EXPECT_FALSE(scene.springs);
   EXPECT_EQ(scene.contact.value().skin, 0);
   EXPECT_EQ(scene.contact->trust, 0);
-  EXPECT_EQ(scene.contact->slack, 0);
   EXPECT_EQ(scene.contact->steps, 3);
   EXPECT_EQ(numbers_of(scene.friction.value()), numbers(0.3));
 }
@@ -188,14 +187,12 @@ TEST_F(SceneFile, TakesEveryKeyOfContactAndFriction) {
   const Scene scene = read(replaced(kSoundScene, kSprings, R"([effects.contact]
 skin = 0.01
 trust = 0.02
-slack = 0.03
 steps = 10
 [effects.friction]
 coefficient = 0.5
 )"));
   EXPECT_EQ(scene.contact.value().skin, 0.01) << "not in the scene's unit";
   EXPECT_EQ(scene.contact->trust, 0.02);
-  EXPECT_EQ(scene.contact->slack, 0.03);
   EXPECT_EQ(scene.contact->steps, 10);
   EXPECT_EQ(numbers_of(scene.friction.value()), numbers(0.5));
 }

@@ -76,8 +76,8 @@ void take_mesh(LoadedBody& body, TriangleMesh mesh, bool voxels, const Scene& sc
   if (voxels) {
     if (!body.named->voxel_size) {
       fail_at(scene, fmt::format("{}.voxel_size", body.table),
-              "springs act between voxels: give the edge of a voxel, or write [effects.contact] in "
-              "place of [effects.springs]");
+              "an effect of the program acts between voxels: give the edge of a voxel, or add "
+              "[effects.contact]");
     }
     body.voxel_size = *body.named->voxel_size;
     if (const std::optional<Error> flaw = lattice_flaw(mesh, body.voxel_size)) {

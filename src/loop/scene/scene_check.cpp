@@ -140,6 +140,21 @@ void check_changes(const Scene& scene) {
   }
 }
 
+// Springs act between voxels. Only a tree file brings its own.
+void check_voxels(const Scene& scene) {
+  const auto check_all = [&](const char* key, const std::vector<SceneBody>& bodies) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const auto* file = std::get_if<std::filesystem::path>(&bodies[i].source);
+      if (bodies[i].voxel_size || (file != nullptr && is_tree_file(*file))) continue;
+      fail_at(scene, path_of_body(key, i, bodies.size()) + ".voxel_size",
+              "springs act between voxels: give the edge of a voxel, or write [effects.contact] in "
+              "place of [effects.springs]");
+    }
+  };
+  check_all("fixed", scene.fixed);
+  check_all("held", scene.held);
+}
+
 // Which effects may stand beside each other.
 void check_contact_effects(const Scene& scene) {
   if (scene.contact && scene.springs) {
@@ -168,6 +183,7 @@ void check_effects(const Check& check, const Scene& scene) {
     check.number("effects.contact.steps", scene.contact->steps, kSteps);
   }
   if (scene.springs) {
+    check_voxels(scene);
     check.number("effects.springs.stiffness", scene.springs->stiffness, kStiffness);
     check.amount("effects.springs.margin", scene.springs->margin);
     check.amount("effects.springs.full_area", scene.springs->full_area);

@@ -48,14 +48,14 @@ TEST(GravityEffect, GivesBackWhatLiftingTook) {
   }
 }
 
-constexpr double kStiffness = 400, kAngular = 0.5, kRadius = 2e-3, kAngle = 0.1;
+constexpr double kSnapStiffness = 400, kSnapAngular = 0.5, kSnapRadius = 2e-3, kSnapAngle = 0.1;
 
 SnapSettings settings() {
   return {.pose = Placement{}.moved(six({0.3, -0.1, 0.2}, {0.4, -0.8, 0.3})),
-          .stiffness = kStiffness,
-          .angular_stiffness = kAngular,
-          .radius = kRadius,
-          .angle = kAngle};
+          .stiffness = kSnapStiffness,
+          .angular_stiffness = kSnapAngular,
+          .radius = kSnapRadius,
+          .angle = kSnapAngle};
 }
 
 double cube(double x) { return x * x * x; }
@@ -63,12 +63,12 @@ double cube(double x) { return x * x * x; }
 // The energy as the header writes it.
 double energy(const Placement& tool) {
   const Vector6 way = motion_between(tool, settings().pose);
-  const double s = way.head<3>().squaredNorm() / (kRadius * kRadius);
-  const double t = way.tail<3>().squaredNorm() / (kAngle * kAngle);
+  const double s = way.head<3>().squaredNorm() / (kSnapRadius * kSnapRadius);
+  const double t = way.tail<3>().squaredNorm() / (kSnapAngle * kSnapAngle);
   const auto p = [](double x) { return x < 1 ? cube(1 - x) : 0; };
   const auto q = [](double x) { return x < 1 ? cube(1 - x * x) : 0; };
-  return -kStiffness * kRadius * kRadius / 6 * p(s) * q(t) -
-         kAngular * kAngle * kAngle / 6 * q(s) * p(t);
+  return -kSnapStiffness * kSnapRadius * kSnapRadius / 6 * p(s) * q(t) -
+         kSnapAngular * kSnapAngle * kSnapAngle / 6 * q(s) * p(t);
 }
 
 EffectCase at(const Vector6& from_pose) {
@@ -87,22 +87,23 @@ TEST(SnapEffect, DrawsToThePoseByTheFormula) {
   const SnapEffect snap(settings());
   EXPECT_LE(respond(snap, at(Vector6::Zero())).wrench.norm(), 1e-12);
   // Half the radius away: s = 1/4, so k (3/4)² x, and nothing turns.
-  const Vector6 away = respond(snap, at(six({0.5 * kRadius, 0, 0}, {0, 0, 0}))).wrench;
-  const double turned_well =
-      2 * kAngular * (kAngle * kAngle) / (kRadius * kRadius) * 0.25 * (0.9375 * 0.9375);
-  EXPECT_NEAR(away[0], -(kStiffness * 0.5625 + turned_well) * 0.5 * kRadius, 1e-12);
+  const Vector6 away = respond(snap, at(six({0.5 * kSnapRadius, 0, 0}, {0, 0, 0}))).wrench;
+  const double turned_well = 2 * kSnapAngular * (kSnapAngle * kSnapAngle) /
+                             (kSnapRadius * kSnapRadius) * 0.25 * (0.9375 * 0.9375);
+  EXPECT_NEAR(away[0], -(kSnapStiffness * 0.5625 + turned_well) * 0.5 * kSnapRadius, 1e-12);
   EXPECT_LE(away.tail<5>().norm(), 1e-12);
   // Half the angle, and no way to go.
-  const Vector6 turned = respond(snap, at(six({0, 0, 0}, {0, 0.5 * kAngle, 0}))).wrench;
-  const double shifted_well =
-      2 * kStiffness * (kRadius * kRadius) / (kAngle * kAngle) * 0.25 * (0.9375 * 0.9375);
+  const Vector6 turned = respond(snap, at(six({0, 0, 0}, {0, 0.5 * kSnapAngle, 0}))).wrench;
+  const double shifted_well = 2 * kSnapStiffness * (kSnapRadius * kSnapRadius) /
+                              (kSnapAngle * kSnapAngle) * 0.25 * (0.9375 * 0.9375);
   EXPECT_NEAR(turned[4],
-              -(kAngular * 0.5625 + shifted_well) * (1 + 0.0625 * kAngle * kAngle) * 0.5 * kAngle,
+              -(kSnapAngular * 0.5625 + shifted_well) * (1 + 0.0625 * kSnapAngle * kSnapAngle) *
+                  0.5 * kSnapAngle,
               1e-12);
   EXPECT_LE(turned.head<4>().norm() + std::abs(turned[5]), 1e-12);
   // The motion within the tick counts like earlier motion.
   EXPECT_LE(
-      (respond(snap, at(Vector6::Zero()), six({0.5 * kRadius, 0, 0}, {0, 0, 0})).wrench - away)
+      (respond(snap, at(Vector6::Zero()), six({0.5 * kSnapRadius, 0, 0}, {0, 0, 0})).wrench - away)
           .norm(),
       1e-12);
 }
@@ -115,14 +116,14 @@ TEST(SnapEffect, IsSilentBeyondTheRadiusOrTheAngleAndSmoothThere) {
     const double some = random.uniform(0, 0.9);
     for (const bool by_turn : {false, true}) {
       const auto reach = [&](double part) {
-        return by_turn ? six(some * kRadius * way, part * kAngle * axis)
-                       : six(part * kRadius * way, some * kAngle * axis);
+        return by_turn ? six(some * kSnapRadius * way, part * kSnapAngle * axis)
+                       : six(part * kSnapRadius * way, some * kSnapAngle * axis);
       };
       const Response beyond = respond(snap, at(reach(1 + 1e-9)));
       ASSERT_EQ(beyond.wrench, Vector6::Zero());
       ASSERT_EQ(beyond.stiffness, Matrix6::Zero());
       // Within e of the edge it is of the order of e²: its slope is 0 there too.
-      const double largest = kStiffness * kRadius + kAngular * kAngle;
+      const double largest = kSnapStiffness * kSnapRadius + kSnapAngular * kSnapAngle;
       ASSERT_LE(respond(snap, at(reach(1 - 1e-4))).wrench.norm(), 1e4 * 1e-8 * largest);
       ASSERT_GT(respond(snap, at(reach(1 - 1e-4))).wrench.norm(), 0);
     }
@@ -133,14 +134,15 @@ TEST(SnapEffect, IsWhatItsEnergyLosesOnTheWay) {
   const SnapEffect snap(settings());
   Random random(52);
   for (int i = 0; i < samples(500); ++i) {
-    const EffectCase c = at(six(random.point(-1, 1) * kRadius, random.point(-1, 1) * kAngle));
+    const EffectCase c =
+        at(six(random.point(-1, 1) * kSnapRadius, random.point(-1, 1) * kSnapAngle));
     const Vector6 wrench = respond(snap, c).wrench;
     for (int k = 0; k < 6; ++k) {
-      const double step = k < 3 ? 1e-4 * kRadius : 1e-4 * kAngle;
+      const double step = k < 3 ? 1e-4 * kSnapRadius : 1e-4 * kSnapAngle;
       const double slope = (energy(c.tool.moved(step * Vector6::Unit(k))) -
                             energy(c.tool.moved(-step * Vector6::Unit(k)))) /
                            (2 * step);
-      const double largest = k < 3 ? kStiffness * kRadius : kAngular * kAngle;
+      const double largest = k < 3 ? kSnapStiffness * kSnapRadius : kSnapAngular * kSnapAngle;
       ASSERT_NEAR(wrench[k], -slope, 1e-5 * largest);
     }
   }
@@ -163,8 +165,8 @@ TEST(SnapEffect, GainsNothingOnAClosedPathOfMovesAndTurns) {
       from_pose += step;
     }
   };
-  const Vector6 out = six({0.7 * kRadius, 0, 0}, {0, 0, 0});
-  const Vector6 turn = six({0, 0, 0}, {0, 0.7 * kAngle, 0});
+  const Vector6 out = six({0.7 * kSnapRadius, 0, 0}, {0, 0, 0});
+  const Vector6 turn = six({0, 0, 0}, {0, 0.7 * kSnapAngle, 0});
   for (const Vector6& way : {out, turn, Vector6(-out), Vector6(-turn)}) go(way);
   EXPECT_GT(moved, 1e-4);
   // The midpoint rule with 400 steps leaves this error.
@@ -177,11 +179,12 @@ TEST(SnapEffect, HasTheStiffnessThatDifferencesShowAtThePoseAndIsPositiveEverywh
   EXPECT_LE(difference(here.stiffness,
                        measured_stiffness(snap, at(Vector6::Zero()), Vector6::Zero(), 1e-6)),
             1e-5);
-  EXPECT_NEAR(here.stiffness(0, 0), kStiffness, 1e-9);
-  EXPECT_NEAR(here.stiffness(5, 5), kAngular, 1e-12);
+  EXPECT_NEAR(here.stiffness(0, 0), kSnapStiffness, 1e-9);
+  EXPECT_NEAR(here.stiffness(5, 5), kSnapAngular, 1e-12);
   Random random(53);
   for (int i = 0; i < samples(500); ++i) {
-    const EffectCase c = at(six(random.point(-1, 1) * kRadius, random.point(-1, 1) * kAngle));
+    const EffectCase c =
+        at(six(random.point(-1, 1) * kSnapRadius, random.point(-1, 1) * kSnapAngle));
     const Response response = respond(snap, c);
     ASSERT_TRUE(is_symmetric_and_semidefinite(response.stiffness));
     // The secant's: it would bring the tool to the pose in one step.

@@ -18,9 +18,9 @@ constexpr double kTouch = 2;
 constexpr double kFullFeatures = 10;
 
 // The directions of the friction cone, round a circle.
-constexpr double kHalf = 0.70710678118654752440;
-constexpr double kCircle[8][2] = {{1, 0},  {kHalf, kHalf},   {0, 1},  {-kHalf, kHalf},
-                                  {-1, 0}, {-kHalf, -kHalf}, {0, -1}, {kHalf, -kHalf}};
+constexpr double kDiagonal = 0.70710678118654752440;
+constexpr double kCircle[8][2] = {{1, 0},  {kDiagonal, kDiagonal},   {0, 1},  {-kDiagonal, kDiagonal},
+                                  {-1, 0}, {-kDiagonal, -kDiagonal}, {0, -1}, {kDiagonal, -kDiagonal}};
 
 // Two unit vectors across a unit vector and each other. Source: T. Duff et al., Building an
 // orthonormal basis, revisited, Journal of Computer Graphics Techniques 6(1), 2017.

@@ -109,7 +109,7 @@ struct ScriptSettings {
 
 /// The content of a scene file, or a scene made by a program. SI but for the bodies and `contact`.
 /// Poses of the tool are motions of the held bodies from their places in the scene: a turn about
-/// the centre of the first one's root cube, then a translation along scene axes.
+/// the origin of the tool, then a translation along scene axes.
 struct Scene {
   std::filesystem::path file = {};                       ///< for messages
   std::string text = {};                                 ///< of `file`; empty without a file
