@@ -154,11 +154,9 @@ rate = 500
 [fixed]
 shape = "box"
 size = [20, 20, 6]
-voxel_size = 1
 [held]
 shape = "box"
 size = [6, 6, 6]
-voxel_size = 1
 translation = [0, 0, 7]
 [device]
 kind = "null"

@@ -127,7 +127,7 @@ kind = "null"
                 self.assertIsNone(servo.last())
                 self.assertEqual((len(servo.contacts), servo.contacts.dtype), (0, ist.SERVO_CONTACT))
                 hand = servo.tool.copy()
-                for tick in range(400):
+                for tick in range(700):  # the force is whole after 500
                     if tick < 200:
                         hand[2, 3] -= 0.01 * scale
                     before = time.monotonic_ns()
