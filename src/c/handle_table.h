@@ -15,8 +15,8 @@ namespace ist::capi {
 /// The kind of the object of a handle.
 enum class HandleKind : std::uint8_t { kMesh = 1, kTree, kQuery, kServo, kWorld, kSweep };
 
-/// How a call uses an object. Shared uses run at the same time as any other. Of the uses that are
-/// `kAlone` one runs at a time.
+/// How a call uses an object. A shared use runs beside any other use. Only one `kAlone` use runs at
+/// a time.
 enum class HandleUse : std::uint8_t { kShared, kAlone };
 
 /// Maps handles to objects. A handle consists of the object's kind, its slot and the number of
@@ -36,7 +36,7 @@ class IST_LOOP_API HandleTable {
   HandleTable(const HandleTable&) = delete;
   HandleTable& operator=(const HandleTable&) = delete;
 
-  /// Takes ownership of the object and returns its handle. Returns 0 where all slots are in use;
+  /// Takes ownership of the object and returns its handle. Returns 0 if all slots are in use;
   /// the caller then keeps the object.
   [[nodiscard]] std::uint64_t insert(HandleKind kind, void* object, Destroy destroy) noexcept;
 

@@ -13,7 +13,7 @@ namespace {
 using Clock = Budget::Clock;
 using std::chrono::nanoseconds;
 
-// Of last(): the pauses between them last longer than a write.
+// The attempts of last(). Their pauses together take longer than a write.
 constexpr int kAttempts = 64;
 
 nanoseconds seconds(double count) {

@@ -141,8 +141,8 @@ IST_C_API ist_status ist_servo_get_body(ist_servo* servo, size_t index,
                                         ist_servo_body* body) IST_NOEXCEPT;
 
 /** Takes a fixed body into the hand, where it is: from the next tick on it moves with the tool. The
- * body is `attachable` in the scene. Call it between two ticks; its queries have as much time or as
- * many tests as those of a tick.
+ * body is `attachable` in the scene. Call it between two ticks. Its queries have the time or the
+ * tests of a tick's queries.
  * Errors: IST_CHANGE_REFUSED while anything touches the body or one in the hand, if it is held
  * already, is not attachable or follows a script, or if the time did not suffice; the message says
  * which. IST_ARGUMENT_INVALID for a name of no body. [real time] */

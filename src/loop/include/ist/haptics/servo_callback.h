@@ -17,7 +17,7 @@ struct ServoCallbackOptions {
   /// Metres in the unit of the poses' translations: 1, or 0.001 for millimetres. Forces are in N
   /// and torques in N m in any case.
   double unit = 1;
-  /// The fraction of a tick, from the call on, in which queries may search: above 0, at most 1.
+  /// Queries may search for this fraction of a tick, from the call on: above 0, at most 1.
   double query_time_fraction = 0.7;
   /// A limit of tests for each query of a tick, in place of the clock: equal forces in every run.
   std::optional<std::uint64_t> sphere_tests = std::nullopt;
@@ -27,7 +27,7 @@ struct ServoCallbackOptions {
 enum class ServoTick {
   kFine,   ///< the contacts were complete
   kHeld,   ///< the contacts were incomplete: the tool is at its last complete pose
-  kFault,  ///< the pose is no rigid motion, or a force is not finite: no force
+  kFault,  ///< the pose is not rigid, or a force is not finite: the force is zero
 };
 
 /// Makes ticks in the thread of a device's driver, which calls on_tick() with the device's pose
@@ -61,7 +61,7 @@ class IST_API ServoCallback {
 
   /// Makes one tick.
   ///
-  /// @param pose   the device's pose, to which the coupling draws the tool
+  /// @param pose   the device's pose: the coupling draws the tool to it
   /// @param force  receives the force on the hand, N, scene axes; zero at a fault
   /// @param torque receives the torque on the hand, N m; zero at a fault
   ///
