@@ -50,6 +50,8 @@ MUTANTS = [
      "return {late, missed_ + slept_through};", "return {late, missed_ + 0 * slept_through};")], ["haptics_test TickSchedule*"]),
     ("callback-takes-metres", "a device's poses are taken to be in metres, whatever it declares", [("servo_callback.cpp",
      "  device.translation() *= options_.unit;\n", "")], ["haptics_test Callback*"]),
+    ("state-of-no-fault", "other threads do not see the ticks that a driver counts as faults", [("servo_callback.cpp",
+     "  tick.fault = true;\n  publish(tick, false, begin);", "  tick.fault = true;\n  ++counts_.ticks;")], ["loop_test ServoState*"]),
     ("callback-has-all-day", "a callback's queries have no deadline", [("servo_callback.cpp", "budget.deadline = begin + query_time_;",
      "budget.deadline = begin + 0 * query_time_ + period_ * 1000;")], ["haptics_test Callback*"]),
     ("latency-rounded-down", "a quantile is the shortest time of its bucket", [("latency_histogram.cpp",

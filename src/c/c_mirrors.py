@@ -40,7 +40,7 @@ class Member:
         self.count = int(found[4] or 1)
         self.pointer = self.stars > 0
         self.is_array = found[4] is not None
-        self.bytes = 8 if self.pointer else TYPES[self.type][0] if self.type in TYPES else 0
+        self.bytes = self.align = 8 if self.pointer else TYPES[self.type][0] if self.type in TYPES else 0
 
 
 def names_to_members(text):
@@ -53,7 +53,7 @@ def names_to_members(text):
 class Struct:
     """A struct with its members and their places."""
 
-    def __init__(self, name, body):
+    def __init__(self, name, body, known):
         self.name, self.members, self.reports = name, [], []
         for text in filter(None, (" ".join(part.split()) for part in body.split(";"))):
             function = re.match(r"(\w+) \(\*(\w+)\)\((.*)\)$", text)
@@ -67,11 +67,13 @@ class Struct:
         self.sized = self.members[0].name == "struct_size"
         place = 0
         for member in self.members:
-            if place % member.bytes:
+            if member.type in known and not member.pointer:
+                member.bytes, member.align = known[member.type].bytes, known[member.type].align
+            if place % member.align:
                 raise SystemExit(f"c_mirrors: {name}.{member.name} begins at byte {place}: put a reserved member before it")
             member.place, place = place, place + member.bytes * member.count
-        self.bytes = place
-        if place % max(member.bytes for member in self.members):
+        self.bytes, self.align = place, max(member.align for member in self.members)
+        if place % self.align:
             raise SystemExit(f"c_mirrors: {name} has {place} bytes: put a reserved member at its end")
 
 
@@ -90,12 +92,14 @@ def read():
     """The structs, handles, numbers and functions of all headers."""
     text = "\n".join((FOLDER / name).read_text(encoding="utf-8") for name in HEADERS)
     plain = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
-    structs = {name: Struct(name, body)
-               for body, name in re.findall(r"typedef struct [\w ]+\{(.*?)\} (\w+);", plain, re.DOTALL)}
     handles = re.findall(r"typedef struct (\w+) \1;", plain)
     numbers = {name: int(number, 0) for name, number in re.findall(r"#define (IST_\w+) (\w+?)u?\b", plain) if number[0].isdigit()}
     for body in re.findall(r"\benum \{(.*?)\}", plain, re.DOTALL):
         numbers.update((name, int(number)) for name, number in re.findall(r"(\w+) = (\d+)", body))
+    plain = re.sub(r"\[(IST_\w+)\]", lambda found: f"[{numbers[found[1]]}]", plain)
+    structs = {}
+    for body, name in re.findall(r"typedef struct [\w ]+\{(.*?)\} (\w+);", plain, re.DOTALL):
+        structs[name] = Struct(name, body, structs)
     functions = [Function(*found) for found in re.findall(
         r"/\*\*((?:[^*]|\*(?!/))*)\*/\nIST_C_API ([\w ]+?\*?) ?(ist_\w+)\(([^)]*)\) IST_NOEXCEPT;", text)]
     if len(functions) != text.count("\nIST_C_API "):
@@ -120,6 +124,8 @@ def ctype(member, structs):
     if member.pointer:
         sized = member.type in structs and structs[member.type].sized
         return f"POINTER({camel(member.type)})" if sized else "c_void_p"
+    if member.type in structs:  # as words, which numpy reads by the struct's dtype
+        return f"c_uint64 * {member.bytes * member.count // 8}"
     return TYPES[member.type][1] + (f" * {member.count}" if member.is_array else "")
 
 

@@ -16,12 +16,14 @@ constexpr std::uint64_t kMarkBits = std::uint64_t{0xFF} << 56;
 static_assert(HandleTable::kSlots == kSlotBits + 1);
 
 // A state has these bits in place of the slot.
-constexpr std::uint64_t kAlive = 0x8000, kUsers = 0x7FFF;
+constexpr std::uint64_t kAlive = 0x8000, kAlone = 0x4000, kShared = 0x3FFF;
+constexpr std::uint64_t kUsers = kAlone | kShared;
 
 constexpr std::uint64_t marked(HandleKind kind) {
   return kMark | static_cast<std::uint64_t>(kind) << kKindAt;
 }
 constexpr std::uint64_t tag_of(std::uint64_t handle) { return handle & ~kSlotBits; }
+constexpr std::uint64_t user(HandleUse use) { return use == HandleUse::kAlone ? kAlone : 1; }
 
 // Checks the mark and the kind, without access to a slot.
 ist_status check(std::uint64_t handle, HandleKind kind) noexcept {
@@ -83,17 +85,17 @@ HandleTable::Taken HandleTable::take(std::uint64_t handle, HandleKind kind,
   std::uint64_t state = slot.state.load(std::memory_order_relaxed);
   do {
     if ((state & ~kUsers) != (tag_of(handle) | kAlive)) return {IST_HANDLE_FREED, nullptr};
-    const std::uint64_t most = use == HandleUse::kAlone ? 0 : kUsers - 1;
-    if ((state & kUsers) > most) return {IST_HANDLE_BUSY, nullptr};
-  } while (!slot.state.compare_exchange_weak(state, state + 1, std::memory_order_acquire,
+    const std::uint64_t users = use == HandleUse::kAlone ? kAlone : kShared;
+    if ((state & users) == users) return {IST_HANDLE_BUSY, nullptr};
+  } while (!slot.state.compare_exchange_weak(state, state + user(use), std::memory_order_acquire,
                                              std::memory_order_relaxed));
   return {IST_OK, slot.object};
 }
 
-void HandleTable::give_back(std::uint64_t handle) noexcept {
+void HandleTable::give_back(std::uint64_t handle, HandleUse use) noexcept {
   Slot& slot = slots_[handle & kSlotBits];
-  const std::uint64_t before = slot.state.fetch_sub(1, std::memory_order_acq_rel);
-  if ((before & kSlotBits) == 1) empty(slot);  // the last user of a removed object
+  const std::uint64_t before = slot.state.fetch_sub(user(use), std::memory_order_acq_rel);
+  if ((before & kSlotBits) == user(use)) empty(slot);  // the last user of a removed object
 }
 
 ist_status HandleTable::remove(std::uint64_t handle, HandleKind kind) noexcept {

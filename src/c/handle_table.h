@@ -15,7 +15,8 @@ namespace ist::capi {
 /// The kind of the object of a handle.
 enum class HandleKind : std::uint8_t { kMesh = 1, kTree, kQuery, kServo, kWorld, kSweep };
 
-/// Whether any number of threads may use an object at a time, or one.
+/// How a call uses an object. A shared use runs beside any other use. Only one `kAlone` use runs at
+/// a time.
 enum class HandleUse : std::uint8_t { kShared, kAlone };
 
 /// Maps handles to objects. A handle consists of the object's kind, its slot and the number of
@@ -35,7 +36,7 @@ class IST_LOOP_API HandleTable {
   HandleTable(const HandleTable&) = delete;
   HandleTable& operator=(const HandleTable&) = delete;
 
-  /// Takes ownership of the object and returns its handle. Returns 0 where all slots are in use;
+  /// Takes ownership of the object and returns its handle. Returns 0 if all slots are in use;
   /// the caller then keeps the object.
   [[nodiscard]] std::uint64_t insert(HandleKind kind, void* object, Destroy destroy) noexcept;
 
@@ -46,14 +47,15 @@ class IST_LOOP_API HandleTable {
   };
   [[nodiscard]] Taken take(std::uint64_t handle, HandleKind kind, HandleUse use) noexcept;
   /// Ends a use that take() began.
-  void give_back(std::uint64_t handle) noexcept;
+  void give_back(std::uint64_t handle, HandleUse use) noexcept;
 
   /// Invalidates the handle; the last user destroys the object.
   [[nodiscard]] ist_status remove(std::uint64_t handle, HandleKind kind) noexcept;
 
  private:
-  // `state` is the handle, with the flag kAlive and the number of users in place of the slot. An
-  // empty slot keeps only its count of uses, without mark and kind.
+  // `state` is the handle, with three things in place of the slot: the flag kAlive, the flag kAlone
+  // of a user that is alone, and the number of shared users. An empty slot keeps only its count of
+  // uses, without mark and kind.
   struct Slot {
     std::atomic<std::uint64_t> state{0};
     void* object = nullptr;
@@ -70,7 +72,7 @@ class IST_LOOP_API HandleTable {
 
 static_assert(sizeof(void*) == sizeof(std::uint64_t), "a handle has the size of a pointer");
 
-/// The base of an object's type: the opaque C type of its handle, its kind and its use.
+/// The base of an object's type: the opaque C type of its handle, its kind and its usual use.
 template <typename CHandle, HandleKind kOfKind, HandleUse kOfUse>
 struct OfHandle {
   using Handle = CHandle;
@@ -103,18 +105,18 @@ void give(Call& call, std::unique_ptr<T> object, typename T::Handle** out) {
 }
 
 /// Keeps the object of a handle alive during a call. A call that failed before gets no object.
-template <typename T>
+template <typename T, HandleUse kUse = T::kUse>
 class Held {
  public:
   Held(Call& call, const char* argument, const typename T::Handle* handle)
       : handle_(number_of(handle)) {
     if (call.status() != IST_OK) return;
-    const HandleTable::Taken taken = handles().take(handle_, T::kKind, T::kUse);
+    const HandleTable::Taken taken = handles().take(handle_, T::kKind, kUse);
     fail_by_handle(call, taken.status, argument, T::kName);
     object_ = static_cast<T*>(taken.object);
   }
   ~Held() {
-    if (object_ != nullptr) handles().give_back(handle_);
+    if (object_ != nullptr) handles().give_back(handle_, kUse);
   }
   Held(const Held&) = delete;
   Held& operator=(const Held&) = delete;

@@ -75,6 +75,55 @@ ist_servo_info servo_info_of(const Servo& servo) {
   return info;
 }
 
+// Converts metres to the poses' unit.
+void copy_point(const std::array<double, 3>& from, double unit, double (&to)[3]) {
+  for (std::size_t i = 0; i < 3; ++i) to[i] = from[i] / unit;
+}
+
+void copy_pose(const ist::TickRecord::Pose& from, double unit, double (&to)[16]) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::copy_n(from.data() + 3 + 3 * i, 3, to + 4 * i);
+    to[12 + i] = from[i] / unit;
+  }
+  to[15] = 1;
+}
+
+ist_servo_contact servo_contact_of(const ist::ContactRecord& point, double unit) {
+  ist_servo_contact contact{};
+  copy_point(point.position, unit, contact.position);
+  std::copy_n(point.normal.data(), 3, contact.normal);
+  std::copy_n(point.force.data(), 3, contact.force);
+  contact.gap = point.gap / unit;
+  contact.fixed_triangle = point.fixed_triangle;
+  contact.held_triangle = point.held_triangle;
+  contact.fixed = point.fixed;
+  contact.held = point.held;
+  return contact;
+}
+
+ist_servo_state servo_state_of(const ist::TickRecord& tick, double unit) {
+  ist_servo_state state{};
+  state.known = 1;
+  state.device_known = tick.device_known ? 1 : 0;
+  state.tick = tick.tick;
+  copy_pose(tick.device, unit, state.device);
+  copy_pose(tick.tool, unit, state.tool);
+  std::copy_n(tick.wrench.data(), 3, state.force);
+  std::copy_n(tick.wrench.data() + 3, 3, state.torque);
+  state.fault = tick.fault ? 1 : 0;
+  state.held = tick.held ? 1 : 0;
+  state.halved = tick.halved ? 1 : 0;
+  state.steps = tick.steps;
+  state.begin_ns = tick.begin_ns;
+  state.execution_ns = tick.execution_ns;
+  static_assert(ist::Tick::kMostPoints == IST_MOST_SERVO_CONTACTS);
+  state.contact_count = tick.point_count;
+  for (std::size_t i = 0; i < tick.point_count; ++i) {
+    state.contacts[i] = servo_contact_of(tick.points[i], unit);
+  }
+  return state;
+}
+
 void refuse_change(Call& call, const char* body, ist::ChangeStatus status) {
   switch (status) {
     case ist::ChangeStatus::kDone:
@@ -179,6 +228,18 @@ ist_status ist_servo_on_tick(ist_servo* servo, const double pose[16], double for
     call.fail(IST_SERVO_FAULT,
               "a force was not a number: the output is zero, and forces return gradually; "
               "report the scene if this repeats");
+  });
+}
+
+ist_status ist_servo_get_state(ist_servo* servo, ist_servo_state* state) IST_NOEXCEPT {
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "state", state);
+    // Shared: the loop may be in a tick.
+    const Held<const Servo, HandleUse::kShared> held(call, "servo", servo);
+    if (!held) return;
+    const ist::ScopedFloatEnvironment environment;
+    const std::optional<ist::TickRecord> tick = held->callback.last();
+    if (tick) write_sized(servo_state_of(*tick, held->callback.unit()), *state);
   });
 }
 

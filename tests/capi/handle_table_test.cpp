@@ -43,8 +43,8 @@ TEST_F(CHandles, LeadToTheirObjects) {
   const std::uint64_t to_a = insert(a), to_b = insert(b, HandleKind::kTree);
   EXPECT_EQ(table_->take(to_a, HandleKind::kMesh, HandleUse::kShared).object, &a);
   EXPECT_EQ(table_->take(to_b, HandleKind::kTree, HandleUse::kAlone).object, &b);
-  table_->give_back(to_a);
-  table_->give_back(to_b);
+  table_->give_back(to_a, HandleUse::kShared);
+  table_->give_back(to_b, HandleUse::kAlone);
   EXPECT_EQ(removed(to_a), "ok");
   EXPECT_EQ(a.destroyed, 1);
   EXPECT_EQ(b.destroyed, 0);
@@ -95,17 +95,32 @@ TEST_F(CHandles, EndWhereTheTableIsFull) {
   EXPECT_EQ(insert(object), 0u);
 }
 
-TEST_F(CHandles, ThatOneMayUseAreBusyMeanwhile) {
+TEST_F(CHandles, LetOneUserBeAloneBesideSharedOnes) {
   Counted object;
   const std::uint64_t handle = insert(object);
-  EXPECT_EQ(taken(handle, HandleKind::kMesh, HandleUse::kShared), "ok");
-  EXPECT_EQ(taken(handle, HandleKind::kMesh, HandleUse::kShared), "ok");
-  EXPECT_EQ(taken(handle, HandleKind::kMesh, HandleUse::kAlone), "handle-busy");
-  table_->give_back(handle);
-  EXPECT_EQ(taken(handle, HandleKind::kMesh, HandleUse::kAlone), "handle-busy");
-  table_->give_back(handle);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(taken(handle, HandleKind::kMesh, HandleUse::kShared), "ok");
+    EXPECT_EQ(taken(handle, HandleKind::kMesh, HandleUse::kAlone), "ok");
+    EXPECT_EQ(taken(handle, HandleKind::kMesh, HandleUse::kAlone), "handle-busy");
+    EXPECT_EQ(taken(handle, HandleKind::kMesh, HandleUse::kShared), "ok");
+    table_->give_back(handle, HandleUse::kShared);
+    EXPECT_EQ(taken(handle, HandleKind::kMesh, HandleUse::kAlone), "handle-busy");
+    table_->give_back(handle, HandleUse::kAlone);
+  }
+}
+
+TEST_F(CHandles, CountSharedUsersUpToTheirRoom) {
+  Counted object;
+  const std::uint64_t handle = insert(object);
+  constexpr int kMost = 0x3FFF;
+  for (int i = 0; i < kMost; ++i) ASSERT_EQ(taken(handle), "ok") << i;
+  EXPECT_EQ(taken(handle), "handle-busy");
   EXPECT_EQ(taken(handle, HandleKind::kMesh, HandleUse::kAlone), "ok");
-  EXPECT_EQ(taken(handle, HandleKind::kMesh, HandleUse::kAlone), "handle-busy");
+  EXPECT_EQ(removed(handle), "ok");
+  for (int i = 0; i < kMost; ++i) table_->give_back(handle, HandleUse::kShared);
+  EXPECT_EQ(object.destroyed, 0);
+  table_->give_back(handle, HandleUse::kAlone);
+  EXPECT_EQ(object.destroyed, 1);
 }
 
 TEST_F(CHandles, ThatAreRemovedInUseGoWithTheLastUser) {
@@ -116,9 +131,9 @@ TEST_F(CHandles, ThatAreRemovedInUseGoWithTheLastUser) {
   EXPECT_EQ(removed(handle), "ok");
   EXPECT_EQ(removed(handle), "handle-freed");
   EXPECT_EQ(taken(handle), "handle-freed");
-  table_->give_back(handle);
+  table_->give_back(handle, HandleUse::kShared);
   EXPECT_EQ(object.destroyed, 0);
-  table_->give_back(handle);
+  table_->give_back(handle, HandleUse::kShared);
   EXPECT_EQ(object.destroyed, 1);
 }
 
@@ -152,7 +167,7 @@ TEST_P(CHandlesThread, UseRemoveAndReplaceTheSame) {
         ++used;
         wrong += (++of.users > 1 && GetParam() == HandleUse::kAlone) || of.destroyed;
         --of.users;
-        table->give_back(to);
+        table->give_back(to, GetParam());
       }
       if (before != 0) removed += table->remove(before, HandleKind::kQuery) == IST_OK;
     }

@@ -237,6 +237,11 @@ static void press(const char* scene) {
   IS(ist_servo_get_info(servo, &info), IST_OK);
   CHECK(info.ticks == 600 && info.faults == 0 && info.held == 0);
   CHECK(info.tool[14] > pose[14] + 0.1); /* it stays outside */
+  ist_servo_state state = {.struct_size = sizeof state};
+  IS(ist_servo_get_state(servo, &state), IST_OK);
+  CHECK(state.known == 1 && state.tick == 599 && state.fault == 0);
+  CHECK(state.tool[14] == info.tool[14] && state.force[2] == force[2]);
+  CHECK(state.contact_count <= IST_MOST_SERVO_CONTACTS);
 
   pose[0] = NAN;
   IS(ist_servo_on_tick(servo, pose, force, torque), IST_POSE_INVALID);

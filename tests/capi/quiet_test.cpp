@@ -109,6 +109,7 @@ Asked ask_all(Bodies& bodies) noexcept {
   auto near_result = sized<ist_near_pairs_result>();
   auto query_info = sized<ist_query_info>();
   auto servo_info = sized<ist_servo_info>();
+  auto servo_state = sized<ist_servo_state>();
   auto budget = sized<ist_budget>();
   std::int32_t answer = 0;
   double force[3], torque[3];
@@ -170,6 +171,7 @@ Asked ask_all(Bodies& bodies) noexcept {
     seen.status(ist_servo_on_tick(bodies.servo, device.data(), force, torque),
                 i == 100 ? IST_POSE_INVALID : IST_OK);
     seen.force = std::max(seen.force, force[2]);
+    seen.status(ist_servo_get_state(bodies.servo, &servo_state), IST_OK);
   }
   // A tick that gets no core in time holds the tool. So the last pose is given until it is felt.
   std::array<double, 16> device;

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <vector>
 
 #include "capi/c_bodies.h"
@@ -143,6 +145,112 @@ TEST_F(CServo, CountsWhatWentWrongAndComesBackSoftly) {
   }
   EXPECT_EQ(info_of(servo).faults, 4u);
   EXPECT_EQ(name(ist_servo_free(servo)), "ok");
+}
+
+// A box of 6 mm, 1 mm above a box of 20 mm whose upper face is at z = 3 mm.
+std::string text_of_boxes() {
+  return R"(unit = "mm"
+rate = 500
+[fixed]
+shape = "box"
+size = [20, 20, 6]
+[held]
+shape = "box"
+size = [6, 6, 6]
+translation = [0, 0, 7]
+[device]
+kind = "null"
+damping = 3
+[effects.contact]
+)";
+}
+
+ist_servo_state state_of(ist_servo* servo) {
+  auto state = sized<ist_servo_state>();
+  EXPECT_EQ(name(ist_servo_get_state(servo, &state)), "ok") << ist_last_error_message();
+  return state;
+}
+
+TEST_F(CServo, GivesTheStateOfTheLastTick) {
+  ist_servo* servo = open(IST_UNIT_MM);
+  EXPECT_EQ(state_of(servo).known, 0);
+  EXPECT_EQ(state_of(servo).tool[15], 0);
+
+  std::array<double, 16> pose;
+  std::copy_n(info_of(servo).tool, 16, pose.begin());
+  double force[3], torque[3];
+  std::int64_t begin = 0;
+  for (std::uint64_t tick = 0; tick < kTicks; ++tick) {
+    pose[14] -= 0.02;
+    ASSERT_EQ(name(ist_servo_on_tick(servo, pose.data(), force, torque)), "ok");
+    const ist_servo_state state = state_of(servo);
+    const ist_servo_info info = info_of(servo);
+    EXPECT_EQ(state.known, 1);
+    EXPECT_EQ(state.device_known, 1);
+    EXPECT_EQ(state.tick, tick);
+    for (std::size_t i = 0; i < 16; ++i) {
+      EXPECT_DOUBLE_EQ(state.device[i], pose[i]) << i;
+      EXPECT_EQ(state.tool[i], info.tool[i]) << i;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(state.force[i], force[i]);
+      EXPECT_EQ(state.torque[i], torque[i]);
+    }
+    EXPECT_EQ(state.fault + state.held, 0);
+    EXPECT_GT(state.begin_ns, begin);
+    EXPECT_GE(state.execution_ns, 0);
+    begin = state.begin_ns;
+  }
+  EXPECT_GT(force[2], 0.3);
+
+  pose[14] = NAN;
+  EXPECT_EQ(name(ist_servo_on_tick(servo, pose.data(), force, torque)), "pose-invalid");
+  const ist_servo_state state = state_of(servo);
+  EXPECT_EQ(state.tick, std::uint64_t{kTicks});
+  EXPECT_EQ(state.fault, 1);
+  EXPECT_EQ(state.device_known, 0);
+  EXPECT_EQ(state.force[2], 0);
+  EXPECT_EQ(name(ist_servo_free(servo)), "ok");
+}
+
+TEST_F(CServo, GivesTheContactsInTheUnitOfThePoses) {
+  for (const std::int32_t unit : {IST_UNIT_MM, IST_UNIT_M}) {
+    const double scale = unit == IST_UNIT_MM ? 1 : 1e-3;
+    ist_servo* servo = open(unit, text_of_boxes());
+    std::array<double, 16> pose;
+    std::copy_n(info_of(servo).tool, 16, pose.begin());
+    double force[3], torque[3];
+    for (int tick = 0; tick < 400; ++tick) {
+      if (tick < 150) pose[14] -= 0.02 * scale;
+      ASSERT_EQ(name(ist_servo_on_tick(servo, pose.data(), force, torque)), "ok");
+      if (tick == 0) {
+        EXPECT_EQ(state_of(servo).contact_count, 0u);
+      }
+    }
+    const ist_servo_state state = state_of(servo);
+    ASSERT_GE(state.contact_count, 1u);
+    ASSERT_LE(state.contact_count, std::uint64_t{IST_MOST_SERVO_CONTACTS});
+    EXPECT_GE(state.steps, 1);
+    double borne = 0;
+    for (std::size_t i = 0; i < state.contact_count; ++i) {
+      const ist_servo_contact& contact = state.contacts[i];
+      EXPECT_NEAR(contact.position[2], 3 * scale, 1e-6 * scale);
+      EXPECT_LE(std::abs(contact.position[0]), 3.01 * scale);
+      EXPECT_NEAR(contact.normal[2], 1, 1e-9);
+      EXPECT_GT(contact.gap, 0);
+      EXPECT_LT(contact.gap, 0.1 * scale);
+      EXPECT_EQ(contact.fixed, 0u);
+      EXPECT_EQ(contact.held, 1u);
+      borne += contact.force[2];
+    }
+    EXPECT_GT(borne, 0.5);
+    EXPECT_NEAR(borne, force[2], 0.01) << "at rest the contacts bear the hand's force";
+    const ist_servo_contact none{};
+    for (std::size_t i = state.contact_count; i < IST_MOST_SERVO_CONTACTS; ++i) {
+      EXPECT_EQ(std::memcmp(&state.contacts[i], &none, sizeof none), 0) << i;
+    }
+    EXPECT_EQ(name(ist_servo_free(servo)), "ok");
+  }
 }
 
 // The scene's bodies intersect: the tool starts elsewhere, with a warning.

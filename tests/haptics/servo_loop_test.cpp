@@ -93,6 +93,7 @@ TEST_F(ServoLoop, MakesTheTicksThatItIsAskedForInOrder) {
     EXPECT_EQ(record.tick, i);
     EXPECT_TRUE(record.device_known);
     EXPECT_GE(record.execution_ns, 0);
+    EXPECT_GE(record.begin_ns, i > 0 ? records[i - 1].begin_ns : 0);
     const double z = 5e-4 - 5e-6 * static_cast<double>(i + 1);
     EXPECT_EQ(record.device[2], bodies_.at(z).translation.z());
     for (int axis = 0; axis < 6; ++axis) {

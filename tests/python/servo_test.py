@@ -1,6 +1,9 @@
 """A scene's loop, a tick at a time, and what is misused in it."""
 
 import os
+import sys
+import threading
+import time
 import unittest
 
 import numpy as np
@@ -104,6 +107,97 @@ name = "tool\"""").replace("[fixed]\nshape", "[[fixed]]\nname = \"plate\"\nshape
             self.refuses(ist.ChangeRefused, "there already", servo.release, "piece")
             self.assertFalse(servo.bodies[1].held)
         self.refuses(ist.FreedError, "freed", servo.attach, "piece")
+
+    BOXES = """unit = "mm"
+[fixed]
+shape = "box"
+size = [10, 10, 4]
+[held]
+shape = "box"
+size = [4, 4, 4]
+translation = [0, 0, 4.5]
+[device]
+kind = "null"
+[effects.contact]
+"""
+
+    def test_the_last_tick_and_its_contacts(self):
+        for unit, scale in (("mm", 1.0), ("m", 1e-3)):
+            with ist.Servo(self.scene(self.BOXES), unit=unit, sphere_tests=100_000) as servo:
+                self.assertIsNone(servo.last())
+                self.assertEqual((len(servo.contacts), servo.contacts.dtype), (0, ist.SERVO_CONTACT))
+                hand = servo.tool.copy()
+                for tick in range(700):  # the force is whole after 500
+                    if tick < 200:
+                        hand[2, 3] -= 0.01 * scale
+                    before = time.monotonic_ns()
+                    felt = servo.tick(hand)
+                    state = servo.last()
+                    self.assertEqual(state.tick, tick)
+                    self.assertGreaterEqual(state.execution_ns, 0)
+                    if sys.platform == "linux":
+                        self.assertTrue(before <= state.begin_ns <= time.monotonic_ns() - state.execution_ns)
+                self.assertEqual(state.tool.tolist(), servo.tool.tolist())
+                np.testing.assert_allclose(state.device, hand, rtol=1e-14)
+                self.assertEqual((state.force.tolist(), state.torque.tolist()), (felt.force.tolist(), felt.torque.tolist()))
+                self.assertTrue(state.device_known and state.steps > 0 and not state.fault and not state.held)
+                contacts = servo.contacts
+                self.assertEqual(contacts.tobytes(), state.contacts.tobytes())
+                self.assertTrue(1 <= len(contacts) <= 6)
+                np.testing.assert_allclose(contacts["position"][:, 2], 2 * scale, rtol=1e-6)  # on the fixed box
+                np.testing.assert_allclose(contacts["normal"], [[0, 0, 1]] * len(contacts), atol=1e-9)
+                self.assertTrue(np.all((contacts["gap"] > 0) & (contacts["gap"] < 0.1 * scale)))
+                self.assertEqual({(int(one["fixed"]), int(one["held"])) for one in contacts}, {(0, 1)})
+                self.assertGreater(felt.force[2], 0.3)
+                self.assertAlmostEqual(contacts["force"][:, 2].sum(), felt.force[2], delta=0.01)  # they bear the hand's force
+                with self.assertRaises(ist.InputError):
+                    servo.tick(None)
+                self.assertTrue(servo.last().fault and not servo.last().device_known)
+                self.assertEqual((servo.last().force.tolist(), len(servo.contacts)), ([0, 0, 0], 0))
+        self.refuses(ist.FreedError, "freed", servo.last)
+
+    def test_a_thread_reads_whole_ticks_while_another_one_ticks(self):
+        ticks, wanted = 300, []
+        scene = self.scene(self.BOXES)
+
+        def make_ticks(servo, note):
+            hand = servo.tool.copy()
+            for tick in range(ticks):
+                hand[2, 3] -= 0.01
+                servo.tick(hand)
+                note(tick)
+
+        with ist.Servo(scene, sphere_tests=100_000) as servo:
+            make_ticks(servo, lambda _: wanted.append(servo.last()))
+        with ist.Servo(scene, sphere_tests=100_000) as servo:
+            seen, latest, done = [], threading.Event(), threading.Event()
+
+            def read():
+                while not done.is_set():
+                    state = servo.last()
+                    if state is not None:
+                        seen.append(state)
+                        latest.set()
+
+            def wait_for_the_reader(tick):  # threads may share a core
+                if tick % 20 == 19:
+                    latest.clear()
+                    self.assertTrue(latest.wait(60))
+
+            reader = threading.Thread(target=read)
+            reader.start()
+            try:
+                make_ticks(servo, wait_for_the_reader)
+            finally:
+                done.set()
+                reader.join()
+        self.assertGreaterEqual(len({state.tick for state in seen}), ticks // 40)
+        self.assertEqual([state.tick for state in seen], sorted(state.tick for state in seen))
+        for state in seen:
+            same = wanted[state.tick]
+            self.assertEqual(state.tool.tobytes(), same.tool.tobytes())
+            self.assertEqual(state.force.tobytes(), same.force.tobytes())
+            self.assertEqual(state.contacts.tobytes(), same.contacts.tobytes())
 
     def test_bad_scenes(self):
         self.refuses(ist.InputError, "scene.toml:3", ist.Servo, self.scene(self.SCENE.replace('"box"', '"bax"')))

@@ -51,6 +51,9 @@ file: pathlib.Path = sweep.folder / "rows.npy"
 with ist.Servo("scene.toml", unit="m") as servo:
     tick = servo.tick(None, out=np.empty((2, 3)))
     z: float = float(tick.force[2])
+    state = servo.last()
+    made: Optional[int] = None if state is None else state.tick
+    gaps = servo.contacts["gap"]
 """
 MISUSE = 'import ist\nist.Query(1, 2)\nist.Query(ist.load("a"), ist.load("b"), spheres="round")\nx: str = ist.load("a").leaves\n'
 

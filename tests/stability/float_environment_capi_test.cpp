@@ -356,6 +356,13 @@ TEST_P(FloatEnvironmentOfTheCInterface, ChangesNoServo) {
       say(torque, record);
       fine(ist_servo_get_info(servo, &info));
       for (const double number : info.tool) record.add(number);
+      auto state = sized<ist_servo_state>();
+      fine(ist_servo_get_state(servo, &state));
+      for (const double number : state.device) record.add(number);
+      for (std::size_t i = 0; i < state.contact_count; ++i) {
+        say(state.contacts[i].position, record);
+        record.add(state.contacts[i].gap);
+      }
       for (const std::size_t index : {0U, 1U}) {
         auto body = sized<ist_servo_body>();
         fine(ist_servo_get_body(servo, index, &body));

@@ -4,15 +4,20 @@
 #include <cmath>
 
 #include "ist/base/float_environment.h"
+#include "ist/base/platform/pause.h"
 #include "ist/base/throw_error.h"
 
 namespace ist {
 namespace {
 
 using Clock = Budget::Clock;
+using std::chrono::nanoseconds;
 
-std::chrono::nanoseconds seconds(double count) {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(count));
+// The attempts of last(). Their pauses together take longer than a write.
+constexpr int kAttempts = 64;
+
+nanoseconds seconds(double count) {
+  return std::chrono::duration_cast<nanoseconds>(std::chrono::duration<double>(count));
 }
 
 void check(const ServoCallbackOptions& options) {
@@ -31,7 +36,7 @@ void check(const ServoCallbackOptions& options) {
 }  // namespace
 
 ServoCallback::ServoCallback(Simulation& simulation, const ServoCallbackOptions& options)
-    : simulation_(simulation), options_(options) {
+    : simulation_(simulation), options_(options), device_(simulation.tool_pose()) {
   const ScopedFloatEnvironment environment;
   check(options);
   period_ = seconds(simulation.dt());
@@ -67,22 +72,47 @@ ServoTick ServoCallback::on_tick(std::span<const double, 16> pose, std::span<dou
   device.translation() *= options_.unit;
 
   const Budget budget = budget_from(begin);
-  const Tick tick = simulation_.tick(Placement::from(device), {budget, budget, budget});
+  const std::optional<Placement> known = Placement::from(device);
+  const Tick tick = simulation_.tick(known, {budget, budget, budget});
   std::copy_n(tick.wrench.data(), 3, force.begin());
   std::copy_n(tick.wrench.data() + 3, 3, torque.begin());
 
-  ++counts_.ticks;
-  counts_.held += tick.held ? 1U : 0U;
-  counts_.faults += tick.fault ? 1U : 0U;
-  counts_.late += Clock::now() - begin > period_ ? 1U : 0U;
+  publish(tick, known.has_value(), begin);
   if (tick.fault) return ServoTick::kFault;
   return tick.held ? ServoTick::kHeld : ServoTick::kFine;
 }
 
 void ServoCallback::fault() noexcept {
+  const Clock::time_point begin = Clock::now();
   simulation_.fault();
+  Tick tick;
+  tick.device = device_;
+  tick.tool = simulation_.tool_pose();
+  tick.fault = true;
+  publish(tick, false, begin);
+}
+
+// Counts a tick, and shows it to other threads.
+void ServoCallback::publish(const Tick& tick, bool device_known, Clock::time_point begin) noexcept {
+  const nanoseconds taken = Clock::now() - begin;
+  TickRecord record = record_of(counts_.ticks, simulation_.dt(), tick, device_known);
+  record.begin_ns = nanoseconds(begin.time_since_epoch()).count();
+  record.execution_ns = taken.count();
+  device_ = tick.device;
+  last_.publish(record);
+
   ++counts_.ticks;
-  ++counts_.faults;
+  counts_.held += tick.held ? 1U : 0U;
+  counts_.faults += tick.fault ? 1U : 0U;
+  counts_.late += taken > period_ ? 1U : 0U;
+}
+
+std::optional<TickRecord> ServoCallback::last() const noexcept {
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (const auto read = last_.try_read()) return *read;
+    pause_briefly();
+  }
+  return std::nullopt;
 }
 
 ServoCallback::Pose ServoCallback::tool() const noexcept {

@@ -82,6 +82,7 @@ class Loop {
     const nanoseconds processor = thread_time() - used;
 
     TickRecord record = record_of(number, simulation_.dt(), tick, at.has_value());
+    record.begin_ns = nanoseconds(begin.time_since_epoch()).count();
     record.late_ns = start.late.count();
     record.execution_ns = nanoseconds(end - begin).count();
     record.cpu_ns = processor.count();

@@ -29,6 +29,7 @@ CONTACT: np.dtype[np.void]
 SURFACE_DISTANCE: np.dtype[np.void]
 CONTACT_REGION: np.dtype[np.void]
 ROW: np.dtype[np.void]
+SERVO_CONTACT: np.dtype[np.void]
 WORLD_PAIR: np.dtype[np.void]
 NOT_PREPARED: int
 TRIANGLES_MISSING: int
@@ -461,6 +462,21 @@ class ServoBody(NamedTuple):
     held: bool
     pose: F8
 
+class ServoState(NamedTuple):
+    tick: int
+    device: F8
+    tool: F8
+    force: F8
+    torque: F8
+    contacts: Records
+    device_known: bool
+    fault: bool
+    held: bool
+    halved: bool
+    steps: int
+    begin_ns: int
+    execution_ns: int
+
 class ServoTick(NamedTuple):
     force: F8
     torque: F8
@@ -492,6 +508,9 @@ class Servo:
     def late(self) -> int: ...
     @property
     def bodies(self) -> Tuple[ServoBody, ...]: ...
+    @property
+    def contacts(self) -> Records: ...
+    def last(self) -> Optional[ServoState]: ...
     def tick(self, pose: Optional[ArrayLike], *, out: Optional[F8] = None) -> ServoTick: ...
     def attach(self, body: str) -> None: ...
     def release(self, body: str) -> None: ...

@@ -208,6 +208,24 @@ class ServoBody(NamedTuple):
     pose: np.ndarray  # (4, 4), maps the mesh to the scene after the last tick
 
 
+class ServoState(NamedTuple):
+    """A tick as any thread sees it. Vectors are along the scene's axes, translations in the servo's unit."""
+
+    tick: int  # its number, from 0
+    device: np.ndarray  # (4, 4), the pose of the device, or its last valid one
+    tool: np.ndarray  # (4, 4), the pose of the tool after the tick, which is the pose to draw
+    force: np.ndarray  # (3,), on the hand, N
+    torque: np.ndarray  # (3,), on the hand, N m, about the tool's origin
+    contacts: np.ndarray  # SERVO_CONTACT: they push the tool; empty with springs
+    device_known: bool  # False: the device had no valid pose
+    fault: bool  # the force was zero after an error
+    held: bool  # the tool stayed where it was: the time did not suffice, or no motion was free
+    halved: bool  # the tool met a body on its way, and stopped before it
+    steps: int  # that the tool made; 0 with springs
+    begin_ns: int  # the tick's start; on Linux by the clock of time.monotonic_ns()
+    execution_ns: int  # from the tick's start to its end
+
+
 class ServoTick(NamedTuple):
     """The output of a tick for the hand, along the scene's axes."""
 

@@ -4,9 +4,9 @@ from ctypes import addressof
 
 import numpy as np
 
-from ._answers import ServoBody, ServoTick
+from ._answers import ServoBody, ServoState, ServoTick
 from ._arrays import address, by_columns, count_of, floats, number_of, place_of
-from ._c import ServoBody as ServoBodyInfo, ServoInfo, ServoOptions
+from ._c import SERVO_CONTACT, ServoBody as ServoBodyInfo, ServoInfo, ServoOptions, ServoState as ServoStateInfo
 from ._errors import check, error_of, refuse
 from ._follow import Follower
 from ._handle import Lone, Out
@@ -14,6 +14,34 @@ from ._library import LIBRARY
 from ._mesh import path_bytes
 
 UNITS = {"m": 1, "mm": 2}
+
+
+def pose_by_rows(numbers):
+    """A pose, (4, 4), of the library's 16 numbers."""
+    return np.array(numbers).reshape(4, 4).T.copy()
+
+
+def state_of(handle):
+    """The last tick of a servo, or None."""
+    state = ServoStateInfo()
+    check(LIBRARY.ist_servo_get_state(handle, addressof(state)))
+    if not state.known:
+        return None
+    return ServoState(
+        state.tick,
+        pose_by_rows(state.device),
+        pose_by_rows(state.tool),
+        np.array(state.force),
+        np.array(state.torque),
+        np.frombuffer(state, SERVO_CONTACT, state.contact_count, ServoStateInfo.contacts.offset),
+        bool(state.device_known),
+        bool(state.fault),
+        bool(state.held),
+        bool(state.halved),
+        state.steps,
+        state.begin_ns,
+        state.execution_ns,
+    )
 
 
 class Servo(Lone):
@@ -70,6 +98,25 @@ class Servo(Lone):
         finally:
             self._lock.release()
 
+    def last(self):
+        """The last tick, as a ServoState: poses, forces, contacts and times.
+
+        Any thread may call it at any time, also while another thread is in tick(): neither waits for the other, and there is no
+        BusyError. None before the first tick, and in the rare case that each attempt to read met a tick that was being written:
+        ask again later.
+        """
+        return state_of(self._need())
+
+    @property
+    def contacts(self):
+        """The contacts that push the tool after the last tick: SERVO_CONTACT, in `unit`. For the thread that makes the ticks."""
+        handle = self._enter()
+        try:
+            state = state_of(handle)
+        finally:
+            self._lock.release()
+        return np.empty(0, SERVO_CONTACT) if state is None else state.contacts
+
     def attach(self, body):
         """Takes a fixed body, by its name, into the hand, where it is. ChangeRefused while anything touches it or the hand."""
         self._change(LIBRARY.ist_servo_attach, body)
@@ -95,8 +142,7 @@ class Servo(Lone):
             for index in range(count):
                 body = ServoBodyInfo()
                 check(LIBRARY.ist_servo_get_body(handle, index, addressof(body)))
-                pose = np.array(body.pose).reshape(4, 4).T.copy()
-                found.append(ServoBody(body.name.decode("utf-8", "replace"), bool(body.held), pose))
+                found.append(ServoBody(body.name.decode("utf-8", "replace"), bool(body.held), pose_by_rows(body.pose)))
         finally:
             self._lock.release()
         return tuple(found)
@@ -119,7 +165,7 @@ class Servo(Lone):
     @property
     def tool(self):
         """The pose of the tool, (4, 4): to begin with where the device should be, later what to draw."""
-        return np.array(self._info().tool).reshape(4, 4).T.copy()
+        return pose_by_rows(self._info().tool)
 
     @property
     def warnings(self):

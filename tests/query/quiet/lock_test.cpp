@@ -133,6 +133,7 @@ TEST(Locks, NoVerbAsksForOne) {
   static_assert(noexcept(callback.attach(0)));
   static_assert(noexcept(callback.release(0)));
   static_assert(noexcept(callback.tool()));
+  static_assert(noexcept(callback.last()));
   static_assert(noexcept(callback.fault()));
   static_assert(noexcept(device.read()));
   static_assert(noexcept(device.write(six, 1.0)));

@@ -13,7 +13,8 @@
  *
  * Threads. Any thread may call any function. Meshes and trees are immutable; any number of threads
  * may share them. A query, a servo or a world serves one call at a time; a second, simultaneous
- * call returns IST_HANDLE_BUSY. An object that is freed during a call lives until the call returns.
+ * call returns IST_HANDLE_BUSY, except ist_servo_get_state. An object that is freed during a call
+ * lives until the call returns.
  *
  * Errors. Functions that can fail return an ist_status: IST_OK or an error code. After an error,
  * ist_last_error_message() gives the calling thread's cause and remedy. No C++ exception leaves the

@@ -23,7 +23,8 @@ enum {
   IST_UNIT_MM = 2 /**< millimetres */
 };
 
-/** A simulated scene. It belongs to one thread at a time. */
+/** A simulated scene. It belongs to one thread at a time, but any thread may call
+ * ist_servo_get_state. */
 typedef struct ist_servo ist_servo;
 
 /** How a scene is built and its ticks are limited. */
@@ -52,7 +53,7 @@ IST_C_API ist_status ist_servo_open_scene(const char* path, const ist_servo_opti
  * as the servo. */
 IST_C_API const char* ist_servo_warning(ist_servo* servo, size_t index) IST_NOEXCEPT;
 
-/** The state of a servo, with counts since it was opened. */
+/** The tool of a servo, and counts since it was opened. */
 typedef struct ist_servo_info {
   size_t struct_size;  /**< the size of this struct, bytes */
   double tick_seconds; /**< nominal duration of a tick, s */
@@ -65,7 +66,7 @@ typedef struct ist_servo_info {
   size_t bodies;   /**< bodies of the scene: the fixed ones, then the held ones */
 } ist_servo_info;
 
-/** Gives the state of a servo. [real time] */
+/** Gives the tool of a servo, and its counts. [real time] */
 IST_C_API ist_status ist_servo_get_info(ist_servo* servo, ist_servo_info* info) IST_NOEXCEPT;
 
 /** Computes one tick: `pose` is the pose of the device; `force` and `torque` receive the output for
@@ -79,6 +80,51 @@ IST_C_API ist_status ist_servo_get_info(ist_servo* servo, ist_servo_info* info) 
  * [real time] */
 IST_C_API ist_status ist_servo_on_tick(ist_servo* servo, const double pose[16], double force[3],
                                        double torque[3]) IST_NOEXCEPT;
+
+/** The most contacts that push the tool at once. */
+#define IST_MOST_SERVO_CONTACTS 6
+
+/** A contact of the tool with a fixed body, along the scene's axes. */
+typedef struct ist_servo_contact {
+  double position[3];      /**< on the fixed body, in the poses' unit */
+  double normal[3];        /**< of unit length, from the fixed body to the held one */
+  double force[3];         /**< on the tool, N */
+  double gap;              /**< between the bodies there, in the poses' unit */
+  uint32_t fixed_triangle; /**< of the fixed mesh, by its index */
+  uint32_t held_triangle;  /**< of the held mesh, by its index */
+  uint32_t fixed;          /**< the fixed body, by its number in ist_servo_get_body */
+  uint32_t held;           /**< the held body, by its number */
+} ist_servo_contact;
+
+/** A tick as other threads see it. Translations are in the poses' unit. */
+typedef struct ist_servo_state {
+  size_t struct_size;   /**< the size of this struct, bytes */
+  int32_t known;        /**< 1; 0: there is no state, and all members below are zero */
+  int32_t device_known; /**< 0: the device had no valid pose */
+  uint64_t tick;        /**< the number of the tick, from 0 */
+  double device[16];    /**< pose of the device, or the last valid one */
+  double tool[16];      /**< pose of the tool after the tick, which is the pose to draw */
+  double force[3];      /**< on the hand, N */
+  double torque[3];     /**< on the hand, N m */
+  int32_t fault;        /**< 1: the tick had an error, and the force was zero */
+  int32_t held;         /**< 1: the tool stayed where it was: the time did not suffice, or no motion
+                           was free */
+  int32_t halved;       /**< 1: the tool met a body on its way, and stopped before it */
+  int32_t steps;        /**< that the tool made; 0 with springs */
+  int64_t begin_ns;     /**< the tick's start, ns of std::chrono::steady_clock, which is
+                           CLOCK_MONOTONIC on Linux */
+  int64_t execution_ns; /**< from the tick's start to its end, ns */
+  uint64_t contact_count;                              /**< of `contacts` */
+  ist_servo_contact contacts[IST_MOST_SERVO_CONTACTS]; /**< that push the tool; the rest is zero */
+} ist_servo_state;
+
+/** Gives the last tick.
+ *
+ * Any thread may call it at any time, also while another thread is in ist_servo_on_tick: the loop
+ * never waits for it, and it never gives IST_HANDLE_BUSY because of the loop. The loop's own thread
+ * gets the tick that it has just made. `known` is 0 before the first tick, and if the loop was
+ * writing during every attempt to read: ask again later. Cost: 1 us. [real time] */
+IST_C_API ist_status ist_servo_get_state(ist_servo* servo, ist_servo_state* state) IST_NOEXCEPT;
 
 /** A body of a servo's scene. */
 typedef struct ist_servo_body {
@@ -95,8 +141,8 @@ IST_C_API ist_status ist_servo_get_body(ist_servo* servo, size_t index,
                                         ist_servo_body* body) IST_NOEXCEPT;
 
 /** Takes a fixed body into the hand, where it is: from the next tick on it moves with the tool. The
- * body is `attachable` in the scene. Call it between two ticks; its queries have as much time or as
- * many tests as those of a tick.
+ * body is `attachable` in the scene. Call it between two ticks. Its queries have the time or the
+ * tests of a tick's queries.
  * Errors: IST_CHANGE_REFUSED while anything touches the body or one in the hand, if it is held
  * already, is not attachable or follows a script, or if the time did not suffice; the message says
  * which. IST_ARGUMENT_INVALID for a name of no body. [real time] */

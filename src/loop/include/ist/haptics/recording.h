@@ -50,10 +50,11 @@ struct TickRecord {
   std::uint32_t point_count;            ///< of Tick::points
   /// The first `point_count` are Tick::points.
   std::array<ContactRecord, Tick::kMostPoints> points;
-  std::optional<HandChange> change;     ///< Tick::change
-  std::int64_t late_ns;                 ///< from the tick's release to its start
-  std::int64_t execution_ns;            ///< from its start to the end of Device::write
-  std::int64_t cpu_ns;                  ///< processor time of the loop's thread meanwhile
+  std::optional<HandChange> change;  ///< Tick::change
+  std::int64_t begin_ns;             ///< the tick's start, by std::chrono::steady_clock
+  std::int64_t late_ns;              ///< from the tick's release to its start
+  std::int64_t execution_ns;         ///< to the end of Device::write, or of on_tick()'s work
+  std::int64_t cpu_ns;               ///< processor time of the loop's thread meanwhile
 };
 
 /// Makes the record of a tick, with times of 0.
