@@ -177,11 +177,12 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
       }
       is_whole = false;
       if (which == Which::kMinima) continue;
-      end.halved = true;
       for (int i = 0; i < kHalvings && !is_free; ++i) {
         fraction *= 0.5;
         is_free = step.try_part(fraction, *bounded, rest);
       }
+      // A replay does not make a step that ended nowhere.
+      if (is_free) end.halved = true;
     }
     if (!is_free) {
       hold();
