@@ -53,7 +53,12 @@ struct ServoReport {
       worst_effects{};                   ///< the time of the effects in that tick
   std::uint64_t ticks = 0;               ///< ticks made
   std::uint64_t missed = 0;              ///< ticks that ended after their period, or were skipped
-  std::uint64_t held = 0;                ///< ticks with incomplete contacts
+  std::uint64_t held = 0;                ///< Tick::held
+  std::uint64_t halved = 0;              ///< Tick::halved
+  std::uint64_t steps = 0;               ///< Tick::steps, in all ticks
+  std::uint64_t in_contact = 0;          ///< ticks in which a contact pushed the tool: Tick::points
+  std::uint32_t most_points = 0;         ///< the most contacts that pushed in a tick
+  double largest_point_force = 0;        ///< the largest force of one contact, N
   std::uint64_t faults = 0;              ///< ticks without a force: Tick::fault
   std::uint64_t fresh = 0,               ///< ticks whose contacts were found by a search
       kept = 0,                          ///< among the leaf pairs kept from earlier ticks
