@@ -16,8 +16,8 @@ using namespace answers;
 
 namespace {
 
-// 1 had no header.
-constexpr int kRecordingFormat = 2;
+// 1 had no header, and 2 no contact points.
+constexpr int kRecordingFormat = 3;
 
 void add_file(nlohmann::ordered_json& line, const char* name, const char* hash,
               const std::filesystem::path& file) {
@@ -85,8 +85,8 @@ std::vector<std::string> RecordingHeader::body_names() const {
   return names;
 }
 
-void RecordingHeader::check(const nlohmann::json& recorded,
-                            const std::filesystem::path& file) const {
+void RecordingHeader::check_format(const nlohmann::json& recorded,
+                                   const std::filesystem::path& file) {
   const auto format = recorded.find("recording");
   if (format == recorded.end() || !format->is_number_integer()) {
     refuse(file,
@@ -94,10 +94,16 @@ void RecordingHeader::check(const nlohmann::json& recorded,
            "0.2 or later");
   }
   if (*format != kRecordingFormat) {
-    refuse(file, fmt::format("a recording of format {}, and this version replays {}: replay it "
-                             "with the version that recorded it",
-                             format->dump(), kRecordingFormat));
+    refuse(file,
+           fmt::format("a recording of format {}, and this version reads {}: record the scene "
+                       "again, or use the version that recorded it",
+                       format->dump(), kRecordingFormat));
   }
+}
+
+void RecordingHeader::check(const nlohmann::json& recorded,
+                            const std::filesystem::path& file) const {
+  check_format(recorded, file);
   const auto scene = recorded.find("scene");
   if (scene == recorded.end() || !scene->is_string()) refuse(file, "no text 'scene': record again");
   const auto text = scene->get<std::string>();
