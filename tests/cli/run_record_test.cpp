@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "cli/recordings/tick_lines.h"
 #include "cli/run_case.h"
@@ -237,34 +239,98 @@ TEST_F(RunRecord, ReplayGivesTheSameBytes) {
 // The recording tells which ticks the clock stopped: here each fourth tick in contact.
 TEST_F(RunRecord, ReplayOfARunThatWasStoppedGivesTheSameBytes) {
   IST_SLOW();
-  const std::string scene = all_effects(), whole = path("whole.jsonl"), first = path("first.jsonl"),
-                    again = path("again.jsonl");
-  ist_well(run(scene, {"--unpaced", "--record", whole}));
-  std::string text;
-  for (const std::string& line : lines_of(file_content(whole))) {
-    const nlohmann::json tick = nlohmann::json::parse(line);
-    const bool stopped = tick.contains("tick") && tick["tick"].get<int>() % 4 == 0 &&
-                         (tick["contacts"].get<int>() > 0 || !tick["points"].empty());
-    if (stopped) {
-      // The clock stopped each second one after its first step.
-      const int made = tick["steps"].get<int>();
-      const int before = tick["tick"].get<int>() % 8 == 0 && made > 1 ? 1 : 0;
-      text += replaced(replaced(replaced(line, "\"complete\":true", "\"complete\":false"),
-                                "\"held\":false", "\"held\":true"),
-                       fmt::format("\"steps\":{},", made), fmt::format("\"steps\":{},", before));
-    } else {
-      text += line;
+  for (const bool contact : {false, true}) {  // or springs
+    const std::string scene = contact ? boxes() : all_effects();
+    const std::string whole = path("whole.jsonl"), first = path("first.jsonl"),
+                      again = path("again.jsonl");
+    ist_well(run(scene, {"--unpaced", "--seconds", "2", "--record", whole}));
+    std::string text;
+    for (const std::string& line : lines_of(file_content(whole))) {
+      const nlohmann::json tick = nlohmann::json::parse(line);
+      const bool stopped = tick.contains("tick") && tick["tick"].get<int>() % 4 == 0 &&
+                           (tick["contacts"].get<int>() > 0 || !tick["points"].empty());
+      if (stopped) {
+        // The clock stopped each second one after its first step.
+        const int made = tick["steps"].get<int>();
+        const int before = tick["tick"].get<int>() % 8 == 0 && made > 1 ? 1 : 0;
+        text += replaced(replaced(replaced(line, "\"complete\":true", "\"complete\":false"),
+                                  "\"held\":false", "\"held\":true"),
+                         fmt::format("\"steps\":{},", made), fmt::format("\"steps\":{},", before));
+      } else {
+        text += line;
+      }
+      text += '\n';
     }
-    text += '\n';
+    const std::string stopped = write("stopped.jsonl", text);
+    ist_well(run(scene, {"--replay", stopped, "--record", first}));
+    ist_well(run(scene, {"--replay", first, "--record", again}));
+    const std::string recorded = file_content(first);
+    std::set<std::pair<bool, int>> held;  // and the steps
+    for (const auto& line : json_lines(recorded)) {
+      if (line.contains("held")) held.emplace(line["held"].get<bool>(), line["steps"].get<int>());
+    }
+    EXPECT_TRUE(held.contains({true, 0})) << "no tick was held";
+    if (contact) EXPECT_TRUE(held.contains({true, 1})) << "none after its first step";
+    EXPECT_FALSE(held.begin()->first) << "every tick was";
+    EXPECT_TRUE(without_times(file_content(again)) == without_times(recorded));
   }
-  const std::string stopped = write("stopped.jsonl", text);
-  ist_well(run(scene, {"--replay", stopped, "--record", first}));
-  ist_well(run(scene, {"--replay", first, "--record", again}));
-  const std::string recorded = file_content(first);
-  EXPECT_NE(recorded.find("\"complete\":false"), std::string::npos) << "no tick was stopped";
-  EXPECT_NE(recorded.find("\"held\":true"), std::string::npos) << "no tick was held";
-  EXPECT_NE(recorded.find("\"held\":false"), std::string::npos) << "every tick was";
-  EXPECT_TRUE(without_times(file_content(again)) == without_times(recorded));
+}
+
+// A box rests on a plate, and the hand presses it: the contacts bear the hand. The report says the
+// same as the ticks.
+TEST_F(RunRecord, ContactPointsBearTheForceOnTheHand) {
+  const std::string scene = write("rest.toml", R"(unit = "mm"
+[fixed]
+shape = "box"
+size = [20, 20, 4]
+[held]
+shape = "box"
+size = [4, 6, 4]
+translation = [0, 0, 5]
+[device]
+kind = "hand"
+plan = [{ time = 0, move = [0, 0, 0] }, { time = 0.5, move = [0, 0, -3] }, { time = 1, move = [0, 0, -3] }]
+[effects.contact]
+)");
+  const std::string file = path("ticks.jsonl");
+  const CommandResult result = ist_well(run(scene, {"--unpaced", "--record", file, "--json"}));
+  const nlohmann::json report = json_lines(result.out).back();
+  const auto lines = json_lines(file_content(file));
+  std::uint64_t in_contact = 0, held = 0, halved = 0;
+  std::size_t most = 0;
+  double largest = 0;
+  for (const auto& tick : lines) {
+    const auto& points = tick["points"];
+    in_contact += points.empty() ? 0U : 1U;
+    held += tick["held"].get<bool>() ? 1U : 0U;
+    halved += tick["halved"].get<bool>() ? 1U : 0U;
+    most = std::max(most, points.size());
+    for (const auto& point : points) {
+      EXPECT_EQ(point["bodies"], (nlohmann::json{0, 1}));
+      EXPECT_NEAR(point["normal"][2].get<double>(), 1, 1e-9);
+      EXPECT_NEAR(point["position"][2].get<double>(), 2e-3, 1e-9);
+      const auto force = point["force"].get<std::array<double, 3>>();
+      largest = std::max(
+          largest, std::sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]));
+    }
+    EXPECT_LE(tick["steps"], 3);
+  }
+  EXPECT_GT(in_contact, 500u);
+  EXPECT_EQ(report["in_contact"], in_contact);
+  EXPECT_EQ(report["most_points"], most);
+  EXPECT_EQ(report["largest_point_force"], largest);
+  EXPECT_EQ(report["held"], held);
+  EXPECT_EQ(report["halved"], halved);
+  const auto& last = lines.back();
+  double force = 0;
+  for (const auto& point : last["points"]) force += point["force"][2].get<double>();
+  EXPECT_GT(force, 0.5);
+  EXPECT_NEAR(last["wrench"][2].get<double>(), force, 1e-3 * force);
+
+  const std::string said = ist_well(run(scene, {"--unpaced"})).out;
+  EXPECT_TRUE(says(said, fmt::format("contact points: {} ticks with any, at most {} at once, at "
+                                     "most {:.3g} N at one; {} ticks halved",
+                                     in_contact, most, largest, halved)));
 }
 
 TEST_F(RunRecord, DamagedRecordingsAreRefusedWithFileLineAndRemedy) {
