@@ -45,7 +45,7 @@ nlohmann::ordered_json json_of_body(const SceneBody& body, const Simulation& sim
   throw_error(ErrorCode::kInputInvalid, "{}:1: {}", file.string(), what);
 }
 
-// The first line, from 1, in which two texts differ.
+// Returns the number of the first line that differs, from 1.
 std::size_t line_of_difference(const std::string& a, const std::string& b) {
   const auto end = std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first;
   return 1 + static_cast<std::size_t>(std::count(a.begin(), end, '\n'));

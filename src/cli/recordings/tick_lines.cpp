@@ -25,7 +25,7 @@ constexpr const char* kCsvBegin =
     "tool_xz,tool_yx,tool_yy,tool_yz,tool_zx,tool_zy,tool_zz,force_x,force_y,force_z,torque_x,"
     "torque_y,torque_z,contacts,leaf_pairs,complete,proximity_complete,held,fault,"
     "steps,halved,points,points_force_x,points_force_y,points_force_z";
-// Of each point, behind "pointN_".
+// The columns of a point. Each has the prefix "pointN_".
 constexpr std::array kPointColumns{
     "x",       "y",       "z",   "normal_x",       "normal_y",      "normal_z",   "force_x",
     "force_y", "force_z", "gap", "triangle_fixed", "triangle_held", "body_fixed", "body_held"};
@@ -222,7 +222,7 @@ std::optional<RecordedTick> TickReader::next(const std::atomic<bool>& stop) {
     refuse("'steps' is not a whole number");
   }
   if (held == true) tick.budget.steps = steps.get<int>();
-  // The steps that were made are made again in full. With none, nothing is searched.
+  // A tick with steps makes them again in full. A tick without steps searches nothing.
   Budget none;
   limit("complete", steps == 0 ? tick.budget.contacts : none);
 

@@ -19,7 +19,7 @@ constexpr double kWithin = 0.999;
 
 class Walk::Step {
  public:
-  // `left` is what is left of the scripts' time in this tick, s.
+  // `left`: the rest of the scripts' time in this tick, s.
   Step(const Parts& parts, Placement& tool, double& time, double left) noexcept
       : parts_(parts), tool_(tool), time_(time), part_(left) {
     look_ahead();

@@ -23,7 +23,7 @@ import {makePlayerView} from '../view/player_view.js';
 
 const distancesAsked = 150;
 const speeds = ['0.05', '0.1', '0.25', '0.5', '1', '2'];
-// Of frames that stand alone, metres become the picture's millimetres.
+// Frames without bodies are drawn in millimetres.
 const frameScale = 1e3;
 // A spring of some hundred N/m draws the tool by fractions of a millimetre, which nobody sees.
 const handApart = 10;

@@ -17,7 +17,7 @@ import {inverse, transformed, turned} from '../pose.js';
 
 /**
  * @param {unknown} written
- * @returns {Point[] | null} null: these are no contact points
+ * @returns {Point[] | null} null if these are no contact points
  */
 export function pointsOf(written) {
   const numbers = (/** @type {unknown} */ value, /** @type {number} */ count) =>

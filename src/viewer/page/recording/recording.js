@@ -15,7 +15,7 @@ import {pointsOf} from './points.js';
  * @property {Change[]} changes
  * @property {boolean} byPoints  the scene has contact: contact points and no leaf pairs
  * @property {number} strongest   N, the largest force of a contact point
- * @property {string | null} cutOff  a sentence, where the last line is not whole
+ * @property {string | null} cutOff  a sentence if the last line is cut off
  */
 /**
  * @typedef {object} Tick
@@ -163,7 +163,7 @@ function parsed(line, number) {
     const value = JSON.parse(line);
     if (value !== null && typeof value === 'object') return value;
   } catch {
-    // Named below, as what is JSON but no object.
+    // The error below names JSON that is no object, too.
   }
   throw new Error(`Line ${number} of the recording is damaged: record the scene again, or take the line out.`);
 }
