@@ -1,10 +1,19 @@
 // Recordings of `ist run`: whole whatever ends the run, and made again to the same bytes.
 
-#include <algorithm>
-#include <cmath>
-#include <set>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "cli/recordings/tick_lines.h"
 #include "cli/run_case.h"
+#include "ist/scene.h"
 #include "support/effort.h"
 
 namespace ist::test {
@@ -25,6 +34,13 @@ std::string without_times(const std::string& text) {
   return result;
 }
 
+std::vector<std::string> cells(const std::string& row) {
+  std::vector<std::string> parts;
+  std::istringstream stream(row + ",");
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  return parts;
+}
+
 TEST_F(RunRecord, RecordsEveryTickAsJsonLines) {
   const std::string file = path("ticks.jsonl");
   ist_well(run(all_effects(), {"--unpaced", "--record", file}));
@@ -42,6 +58,9 @@ TEST_F(RunRecord, RecordsEveryTickAsJsonLines) {
                                       "proximity_complete",
                                       "held",
                                       "fault",
+                                      "steps",
+                                      "halved",
+                                      "points",
                                       "late_microseconds",
                                       "microseconds",
                                       "cpu_microseconds"};
@@ -65,14 +84,8 @@ TEST_F(RunRecord, RecordsTheSameNumbersAsCsv) {
   const auto objects = json_lines(file_content(lines));
   const std::vector<std::string> rows = lines_of(file_content(csv));
   ASSERT_EQ(rows.size(), objects.size() + 1);
-  const auto cells = [](const std::string& row) {
-    std::vector<std::string> parts;
-    std::istringstream stream(row + ",");
-    for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
-    return parts;
-  };
   const std::vector<std::string> header = cells(rows[0]);
-  EXPECT_EQ(header.size(), 42u);
+  EXPECT_EQ(header.size(), 42u + 6 + 6 * 14);
   EXPECT_EQ(std::set<std::string>(header.begin(), header.end()).size(), header.size());
   const auto column = [&](const char* name) {
     const auto found = std::find(header.begin(), header.end(), name);
@@ -96,6 +109,123 @@ TEST_F(RunRecord, RecordsTheSameNumbersAsCsv) {
   }
 }
 
+// A file of ticks that a test made, for a scene of two bodies.
+class TickFile : public RunRecord {
+ protected:
+  [[nodiscard]] cli::RecordingHeader header() const {
+    return cli::RecordingHeader(scene_, *built_.simulation);
+  }
+  [[nodiscard]] std::string written(const std::string& name,
+                                    const std::vector<TickRecord>& ticks) const {
+    cli::TickWriter writer(path(name), header());
+    for (const TickRecord& tick : ticks) writer.write(tick);
+    writer.commit();
+    return path(name);
+  }
+  // A tick in contact, with numbers that no rounding keeps.
+  [[nodiscard]] TickRecord touching(std::uint64_t number, std::uint32_t points) const {
+    const Placement start = built_.simulation->tool_pose();
+    TickRecord record{};
+    record.tick = number;
+    record.dt = built_.simulation->dt();
+    record.device = record.tool = to_numbers(start);
+    record.device_known = true;
+    record.contacts = QueryResult{};
+    record.steps = 2;
+    record.point_count = points;
+    for (std::uint32_t i = 0; i < points; ++i) {
+      const double x = 0.1 + i;
+      record.points[i] = {{x / 3, -x / 7, 1e-20 / x},
+                          {0, 0.6, -0.8},
+                          {x, 2 * x, 3.5},
+                          5e-6 / x,
+                          4000000000U + i,
+                          7 * i,
+                          i % 2,
+                          2};
+    }
+    return record;
+  }
+
+  const Scene scene_ = read_scene(boxes());
+  const BuiltScene built_ = build_scene(scene_);
+};
+
+TEST_F(TickFile, HasEachContactPointWithAllItsDigits) {
+  const std::vector<TickRecord> ticks{touching(0, 0), touching(1, 1), touching(2, 6)};
+  const auto lines = json_lines(file_content(written("a.jsonl", ticks)));
+  const std::vector<std::string> rows = lines_of(file_content(written("a.csv", ticks)));
+  ASSERT_EQ(lines.size(), 3u);
+  ASSERT_EQ(rows.size(), 4u);
+  const std::vector<std::string> names = cells(rows[0]);
+  for (std::size_t t = 0; t < 3; ++t) {
+    const nlohmann::json& points = lines[t]["points"];
+    EXPECT_EQ(lines[t]["steps"], 2);
+    EXPECT_EQ(lines[t]["halved"], false);
+    ASSERT_EQ(points.size(), ticks[t].point_count);
+    std::map<std::string, std::string> row;
+    const std::vector<std::string> values = cells(rows[t + 1]);
+    ASSERT_EQ(values.size(), names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = values[i];
+    EXPECT_EQ(row["points"], std::to_string(points.size()));
+    double sum = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const ContactRecord& point = ticks[t].points[i];
+      EXPECT_EQ(points[i],
+                (nlohmann::json{{"position", point.position},
+                                {"normal", point.normal},
+                                {"force", point.force},
+                                {"gap", point.gap},
+                                {"triangles", {point.fixed_triangle, point.held_triangle}},
+                                {"bodies", {point.fixed, point.held}}}));
+      const std::string name = fmt::format("point{}_", i + 1);
+      EXPECT_EQ(std::stod(row[name + "x"]), point.position[0]);
+      EXPECT_EQ(std::stod(row[name + "normal_z"]), point.normal[2]);
+      EXPECT_EQ(std::stod(row[name + "force_y"]), point.force[1]);
+      EXPECT_EQ(std::stod(row[name + "gap"]), point.gap);
+      EXPECT_EQ(row[name + "triangle_fixed"], std::to_string(point.fixed_triangle));
+      EXPECT_EQ(row[name + "body_held"], "2");
+      sum += point.force[1];
+    }
+    EXPECT_EQ(std::stod(row["points_force_y"]), sum);
+    EXPECT_EQ(row["point6_x"].empty(), points.size() < 6);
+    EXPECT_EQ(row["point6_body_held"].empty(), points.size() < 6);
+    EXPECT_EQ(row["cpu_microseconds"], "0");
+  }
+}
+
+// A tick that was held makes its steps again. With none, its query ends as it did.
+TEST_F(TickFile, ReplayLimitsHeldTicksAlone) {
+  std::vector<TickRecord> ticks{touching(0, 1), touching(1, 1), touching(2, 0), touching(3, 0)};
+  ticks[1].held = true;
+  ticks[1].contacts->complete = false;
+  ticks[2].held = true;
+  ticks[2].contacts->complete = false;
+  ticks[2].steps = 0;
+  ticks[3].contacts.reset();
+  ticks[3].proximity = QueryResult{};
+  ticks[3].proximity->complete = false;
+  cli::TickReader reader(written("a.jsonl", ticks), header());
+  const std::atomic<bool> stop{false};
+  const auto budget = [&] {
+    const std::optional<RecordedTick> tick = reader.next(stop);
+    EXPECT_TRUE(tick);
+    return tick ? tick->budget : TickBudget{};
+  };
+  const TickBudget whole = budget(), held = budget(), none = budget(), near = budget();
+  EXPECT_EQ(whole.steps, TickBudget{}.steps);
+  EXPECT_FALSE(whole.contacts.has_tests());
+  EXPECT_EQ(held.steps, 2);
+  EXPECT_FALSE(held.contacts.has_tests());
+  EXPECT_EQ(none.steps, 0);
+  EXPECT_TRUE(none.contacts.has_tests());
+  EXPECT_EQ(none.contacts.tests, 0u);
+  EXPECT_EQ(near.steps, TickBudget{}.steps);
+  EXPECT_FALSE(near.contacts.has_tests());
+  EXPECT_EQ(near.proximity.tests, 0u);
+  EXPECT_FALSE(reader.next(stop));
+}
+
 TEST_F(RunRecord, ReplayGivesTheSameBytes) {
   for (const std::string& scene : {shipped("slide"), all_effects()}) {
     const std::string first = path("first.jsonl"), again = path("again.jsonl");
@@ -106,29 +236,101 @@ TEST_F(RunRecord, ReplayGivesTheSameBytes) {
   }
 }
 
-// Also of what the clock stopped now and then, as the recording says; here every fourth tick that
-// presses.
+// The recording tells which ticks the clock stopped: here each fourth tick in contact.
 TEST_F(RunRecord, ReplayOfARunThatWasStoppedGivesTheSameBytes) {
   IST_SLOW();
-  const std::string scene = all_effects(), whole = path("whole.jsonl"), first = path("first.jsonl"),
-                    again = path("again.jsonl");
-  ist_well(run(scene, {"--unpaced", "--record", whole}));
-  std::string text;
-  for (const std::string& line : lines_of(file_content(whole))) {
-    const nlohmann::json tick = nlohmann::json::parse(line);
-    const bool stopped = tick.contains("tick") && tick["tick"].get<int>() % 4 == 0 &&
-                         tick["contacts"].get<int>() > 0;
-    text += stopped ? replaced(line, "\"complete\":true", "\"complete\":false") : line;
-    text += '\n';
+  for (const bool contact : {false, true}) {  // or springs
+    const std::string scene = contact ? boxes() : all_effects();
+    const std::string whole = path("whole.jsonl"), first = path("first.jsonl"),
+                      again = path("again.jsonl");
+    ist_well(run(scene, {"--unpaced", "--seconds", "2", "--record", whole}));
+    std::string text;
+    for (const std::string& line : lines_of(file_content(whole))) {
+      const nlohmann::json tick = nlohmann::json::parse(line);
+      const bool stopped = tick.contains("tick") && tick["tick"].get<int>() % 4 == 0 &&
+                           (tick["contacts"].get<int>() > 0 || !tick["points"].empty());
+      if (stopped) {
+        // The clock stopped each second one after its first step.
+        const int made = tick["steps"].get<int>();
+        const int before = tick["tick"].get<int>() % 8 == 0 && made > 1 ? 1 : 0;
+        text += replaced(replaced(replaced(line, "\"complete\":true", "\"complete\":false"),
+                                  "\"held\":false", "\"held\":true"),
+                         fmt::format("\"steps\":{},", made), fmt::format("\"steps\":{},", before));
+      } else {
+        text += line;
+      }
+      text += '\n';
+    }
+    const std::string stopped = write("stopped.jsonl", text);
+    ist_well(run(scene, {"--replay", stopped, "--record", first}));
+    ist_well(run(scene, {"--replay", first, "--record", again}));
+    const std::string recorded = file_content(first);
+    std::set<std::pair<bool, int>> held;  // and the steps
+    for (const auto& line : json_lines(recorded)) {
+      if (line.contains("held")) held.emplace(line["held"].get<bool>(), line["steps"].get<int>());
+    }
+    EXPECT_TRUE(held.contains({true, 0})) << "no tick was held";
+    if (contact) EXPECT_TRUE(held.contains({true, 1})) << "none after its first step";
+    EXPECT_FALSE(held.begin()->first) << "every tick was";
+    EXPECT_TRUE(without_times(file_content(again)) == without_times(recorded));
   }
-  const std::string stopped = write("stopped.jsonl", text);
-  ist_well(run(scene, {"--replay", stopped, "--record", first}));
-  ist_well(run(scene, {"--replay", first, "--record", again}));
-  const std::string recorded = file_content(first);
-  EXPECT_NE(recorded.find("\"complete\":false"), std::string::npos) << "no tick was stopped";
-  EXPECT_NE(recorded.find("\"held\":true"), std::string::npos) << "no tick was held";
-  EXPECT_NE(recorded.find("\"held\":false"), std::string::npos) << "every tick was";
-  EXPECT_TRUE(without_times(file_content(again)) == without_times(recorded));
+}
+
+// A box rests on a plate, and the hand presses it: the contacts bear the hand. The report says the
+// same as the ticks.
+TEST_F(RunRecord, ContactPointsBearTheForceOnTheHand) {
+  const std::string scene = write("rest.toml", R"(unit = "mm"
+[fixed]
+shape = "box"
+size = [20, 20, 4]
+[held]
+shape = "box"
+size = [4, 6, 4]
+translation = [0, 0, 5]
+[device]
+kind = "hand"
+plan = [{ time = 0, move = [0, 0, 0] }, { time = 0.5, move = [0, 0, -3] }, { time = 1, move = [0, 0, -3] }]
+[effects.contact]
+)");
+  const std::string file = path("ticks.jsonl");
+  const CommandResult result = ist_well(run(scene, {"--unpaced", "--record", file, "--json"}));
+  const nlohmann::json report = json_lines(result.out).back();
+  const auto lines = json_lines(file_content(file));
+  std::uint64_t in_contact = 0, held = 0, halved = 0;
+  std::size_t most = 0;
+  double largest = 0;
+  for (const auto& tick : lines) {
+    const auto& points = tick["points"];
+    in_contact += points.empty() ? 0U : 1U;
+    held += tick["held"].get<bool>() ? 1U : 0U;
+    halved += tick["halved"].get<bool>() ? 1U : 0U;
+    most = std::max(most, points.size());
+    for (const auto& point : points) {
+      EXPECT_EQ(point["bodies"], (nlohmann::json{0, 1}));
+      EXPECT_NEAR(point["normal"][2].get<double>(), 1, 1e-9);
+      EXPECT_NEAR(point["position"][2].get<double>(), 2e-3, 1e-9);
+      const auto force = point["force"].get<std::array<double, 3>>();
+      largest = std::max(
+          largest, std::sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]));
+    }
+    EXPECT_LE(tick["steps"], 3);
+  }
+  EXPECT_GT(in_contact, 500u);
+  EXPECT_EQ(report["in_contact"], in_contact);
+  EXPECT_EQ(report["most_points"], most);
+  EXPECT_EQ(report["largest_point_force"], largest);
+  EXPECT_EQ(report["held"], held);
+  EXPECT_EQ(report["halved"], halved);
+  const auto& last = lines.back();
+  double force = 0;
+  for (const auto& point : last["points"]) force += point["force"][2].get<double>();
+  EXPECT_GT(force, 0.5);
+  EXPECT_NEAR(last["wrench"][2].get<double>(), force, 1e-3 * force);
+
+  const std::string said = ist_well(run(scene, {"--unpaced"})).out;
+  EXPECT_TRUE(says(said, fmt::format("contact points: {} ticks with any, at most {} at once, at "
+                                     "most {:.3g} N at one; {} ticks halved",
+                                     in_contact, most, largest, halved)));
 }
 
 TEST_F(RunRecord, DamagedRecordingsAreRefusedWithFileLineAndRemedy) {
@@ -151,6 +353,11 @@ TEST_F(RunRecord, DamagedRecordingsAreRefusedWithFileLineAndRemedy) {
       {replaced(third, "\"complete\"", "\"whole\""), "no key 'complete'"},
       {replaced(third, "\"complete\":true", "\"complete\":1"),
        "'complete' is neither true, false nor null"},
+      {replaced(third, "\"held\"", "\"stuck\""), "no key 'held'"},
+      {replaced(third, "\"held\":false", "\"held\":null"), "'held' is neither true nor false"},
+      {replaced(third, "\"steps\"", "\"feet\""), "no key 'steps'"},
+      {replaced(third, "\"steps\":", "\"steps\":-"), "'steps' is not a whole number"},
+      {replaced(third, "\"steps\":", "\"steps\":99999999999"), "'steps' is not a whole number"},
       {replaced(third, "\"device\":[", "\"device\":[1,"), "'device' is not an array of 12 numbers"},
       {replaced(third, "\"device\":[", "\"device\":[\"x\","),
        "'device' is not an array of 12 numbers"},
@@ -181,7 +388,7 @@ TEST_F(RunRecord, ReplayRefusesARecordingOfAnotherScene) {
   ist_well(run(scene, {"--unpaced", "--seconds", "0.01", "--record", file}));
   const std::string recorded = file_content(file), first = lines_of(recorded)[0];
   const nlohmann::json header = nlohmann::json::parse(first);
-  EXPECT_EQ(header["recording"], 2);
+  EXPECT_EQ(header["recording"], 3);
   EXPECT_EQ(header["scene"], text);
   EXPECT_EQ(header["dt"], 0.001);
   EXPECT_EQ(header["unit"], 0.001);
@@ -206,9 +413,14 @@ TEST_F(RunRecord, ReplayRefusesARecordingOfAnotherScene) {
                  "it was recorded with another scene, which differs from line");
   expect_refused(scene, write("old.jsonl", recorded.substr(first.size() + 1)),
                  "no header of a recording");
-  expect_refused(scene, with_header(replaced(first, "\"recording\":2", "\"recording\":3")),
-                 "a recording of format 3, and this version replays 2");
-  expect_refused(scene, with_header("{\"recording\":2}"), "no text 'scene'");
+  for (const char* other : {"2", "4"}) {
+    expect_refused(
+        scene,
+        with_header(replaced(first, "\"recording\":3", std::string("\"recording\":") + other)),
+        std::string("a recording of format ") + other +
+            ", and this version reads 3: record the scene again, or use");
+  }
+  expect_refused(scene, with_header("{\"recording\":3}"), "no text 'scene'");
   expect_refused(scene, with_header(replaced(first, "\"bodies\"", "\"corpora\"")),
                  "no array 'bodies'");
   write("ball.stl", file_content(body) + " ");

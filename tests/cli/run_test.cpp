@@ -42,7 +42,7 @@ TEST_F(Run, TheShippedScenesAreSound) {
 
 TEST_F(Run, PrintsWhatTicksTook) {
   const CommandResult result = ist_well(run(boxes(), {"--unpaced", "--seconds", "0.3"}));
-  for (const char* part : {"300 ticks of 1000 µs: 0 deadlines missed, 0 answers incomplete",
+  for (const char* part : {"300 ticks of 1000 µs: 0 deadlines missed, 0 ticks held, 0 faults",
                            "p99.99", "began late", "processor", "effects, a tick: damping "}) {
     EXPECT_TRUE(says(result.out, part));
   }

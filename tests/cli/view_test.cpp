@@ -213,12 +213,14 @@ TEST_F(View, RefusesWithFileAndRemedy) {
   refuses({"view", path("t.jsonl"), "--no-names", "-o", out}, 2, "names its files");
   write("scene.toml", file_content(scene) + "# another\n");
   refuses({"view", path("t.jsonl"), "--scene", scene, "-o", out}, 3, "another scene");
+  const std::string old = write("old.jsonl", R"({"recording":2,"scene":""})");
+  refuses({"view", old, "-o", out}, 3, "a recording of format 2, and this version reads 3: record");
   write("page.html", "<html>no page</html>");
   refuses({"view", one, "-o", out}, 3, "scripts/viewer.sh");
   write("page.html", html_ + html_);
   refuses({"view", one, "-o", out}, 3, "page.html");
   write("page.html", html_);
-  const std::string long_one = write("long.jsonl", R"({"recording":2,)");
+  const std::string long_one = write("long.jsonl", R"({"recording":3,)");
   std::filesystem::resize_file(long_one, 300'000'001);  // it takes no place on the disk
   refuses({"view", long_one, "-o", out}, 3, "long.jsonl: it has 300 MB, and a page holds");
   name_page(path("gone.html"));

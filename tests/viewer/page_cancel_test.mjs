@@ -177,8 +177,8 @@ test('answers a hand while a map is made, and makes that of the pose where it re
 
 test('draws while it reads a recording, and ends that too', async () => {
   const row = [0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1];
-  const header = {recording: 2, ist: '1.2.3', dt: 0.001, unit: 0.001, bodies: [{name: 'fixed'}, {name: 'held'}], scene: ''};
-  const tick = (number) => ({tick: number, dt: 0.001, device: row, tool: row, wrench: [0, 0, 0, 0, 0, 0]});
+  const header = {recording: 3, ist: '1.2.3', dt: 0.001, unit: 0.001, bodies: [{name: 'fixed'}, {name: 'held'}], scene: ''};
+  const tick = (number) => ({tick: number, dt: 0.001, device: row, tool: row, wrench: [0, 0, 0, 0, 0, 0], points: []});
   const text = (ticks) => [header, ...Array.from({length: ticks}, (_, at) => tick(at))].map((line) => `${JSON.stringify(line)}\n`).join('');
   const opened = await openPage(browser, '#voxel=2&panel=recording', {
     before: () => {

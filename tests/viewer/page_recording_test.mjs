@@ -31,6 +31,11 @@ stiffness = 20000
 const last = 299,
   lateTick = 100,
   missingTick = 200;
+// The last tick has two contact points: the second is the stronger one.
+const points = [
+  {position: [0, 0, 0.02], normal: [0, 0, -1], force: [0, 0, -1.5], gap: 5e-6, triangles: [3, 4], bodies: [0, 1]},
+  {position: [0.01, 0, 0.02], normal: [0, 0, -1], force: [0, 0, -2.5], gap: 4e-6, triangles: [5, 6], bodies: [0, 1]},
+];
 let written;
 
 stage(() => {
@@ -39,6 +44,7 @@ stage(() => {
   // How long a tick took is the machine's: here one takes longer than a period, and one is missed.
   written = linesOf(readFileSync(path.join(folder, 'measured.jsonl'), 'utf8'))
     .filter(({tick}) => tick !== missingTick)
+    .map((line) => (line.tick === last ? {...line, steps: 1, points} : line))
     .map((line) => (line.tick === undefined ? line : {...line, late_microseconds: 0, microseconds: line.tick === lateTick ? 1500 : 40}));
   writeFileSync(path.join(folder, 'run.jsonl'), written.map((line) => `${JSON.stringify(line)}\n`).join(''));
   ist(folder, 'view', 'run.jsonl', '--scene', 'scene.toml', '-o', 'run.html');
@@ -174,6 +180,13 @@ test('says of a tick that it is late, and what the hand felt', async () => {
     Math.abs(parseFloat((await facts()).Force.replace('−', '-')) - force) < 0.01 * force,
     `${(await facts()).Force}, not ${force} N`,
   );
+  assert.equal((await facts())['Contact points'], '2');
+  const rows = page.getByRole('table', {name: /^2 contact points/}).locator('tbody tr');
+  assert.deepEqual(await rows.evaluateAll((all) => all.map((row) => [...row.cells].map((cell) => cell.textContent))), [
+    ['1', '2.5', '10.00 0.00 20.00', 'fixed, held', '5, 6', '4'],
+    ['2', '1.5', '0.00 0.00 20.00', 'fixed, held', '3, 4', '5'],
+  ]);
+  await page.getByRole('button', {name: 'Look at contact point 1'}).click();
   await ready(page);
   await closePage(opened);
 });

@@ -6,20 +6,20 @@ import {closedBy, lastPicture, openPage, ready} from './browser.mjs';
 const canvas = {width: 400, height: 300};
 /** Of the picture of the whole page. */
 export const wholePage = {width: 1100, height: 640};
-// Of the built-in lower jaw in voxels of 1 mm: where a recording has the tool's origin.
-const rootCentre = [8.99052429, 11.52035904, 71.21711206];
+// The middle of the box of the built-in lower jaw: the tool's origin in a recording.
+const middle = [0, -7.72038269, 43.5451901];
 /** Of the pixels, how many may be off, and by how much of 255 a pixel that is not may differ. */
 export const mostOff = 0.01,
   mostChange = 16;
 
 /** A hand that holds the lower jaw half a millimetre below the upper one, and draws it upwards. */
 function recordingOfJaws() {
-  const tool = rootCentre.map((value) => value * 1e-3);
+  const tool = middle.map((value) => value * 1e-3);
   const scene =
     'unit = "mm"\n[fixed]\nshape = "upper jaw"\nvoxel_size = 1\n[held]\nshape = "lower jaw"\nvoxel_size = 1\n' +
     'translation = [0, 0, -0.5]\n[effects.contact]\n';
   const row = (dz) => [tool[0], tool[1], tool[2] + dz - 0.5e-3, 1, 0, 0, 0, 1, 0, 0, 0, 1];
-  const header = {recording: 2, ist: '1.2.3', commit: '', dt: 0.001, unit: 0.001, bodies: [{name: 'fixed'}, {name: 'held'}], scene};
+  const header = {recording: 3, ist: '1.2.3', commit: '', dt: 0.001, unit: 0.001, bodies: [{name: 'fixed'}, {name: 'held'}], scene};
   const ticks = [0, 1].map((tick) => ({
     tick,
     dt: 0.001,
@@ -27,6 +27,8 @@ function recordingOfJaws() {
     tool: row(0),
     wrench: [0, 0, -2, 0, 0, 0],
     contacts: 9,
+    steps: 0,
+    points: [],
     held: false,
     fault: false,
     late_microseconds: 0,

@@ -4,10 +4,11 @@ import {test} from 'node:test';
 import {identity, multiply, transformed, translation} from '../../src/viewer/page/pose.js';
 import {placeAt, relative, spansOf} from '../../src/viewer/page/recording/placed_bodies.js';
 import {indexAt, toolPath} from '../../src/viewer/page/recording/playback.js';
+import {arrowsOf} from '../../src/viewer/page/recording/points.js';
 import {parseRecording, poseOfRow, recordingSteps} from '../../src/viewer/page/recording/recording.js';
 import {placedByScene, sceneBodies} from '../../src/viewer/page/recording/scene_bodies.js';
 
-const header = {recording: 2, ist: '1.2.3', commit: 'c', dt: 0.001, unit: 0.001, bodies: [{name: 'fixed'}, {name: 'held'}], scene: ''};
+const header = {recording: 3, ist: '1.2.3', commit: 'c', dt: 0.001, unit: 0.001, bodies: [{name: 'fixed'}, {name: 'held'}], scene: ''};
 const row = (z) => [0, 0, z, 1, 0, 0, 0, 1, 0, 0, 0, 1];
 const tick = (number, more = {}) => ({
   tick: number,
@@ -18,10 +19,14 @@ const tick = (number, more = {}) => ({
   contacts: 5,
   held: false,
   fault: false,
+  steps: 0,
+  halved: false,
+  points: [],
   late_microseconds: 1,
   microseconds: 40,
   ...more,
 });
+const point = {position: [0.001, 0, 0], normal: [0, 0, 1], force: [0, 3, 4], gap: 5e-6, triangles: [7, 9], bodies: [0, 1]};
 const text = (...lines) => lines.map((line) => (typeof line === 'string' ? line : JSON.stringify(line))).join('\n') + '\n';
 
 test('ticks are read, with their force and time', () => {
@@ -32,6 +37,35 @@ test('ticks are read, with their force and time', () => {
   assert.equal(ticks[1].force, 5);
   assert.equal(ticks[1].time, 0.001);
   assert.deepEqual(ticks[1].tool, translation([0, 0, 0.001]));
+});
+
+test('ticks have contact points, steps, and what became of them', () => {
+  const strong = {...point, force: [0, -6, 8]};
+  const {ticks, byPoints, strongest} = parseRecording(
+    text(header, tick(0, {steps: 1, points: [point]}), tick(1, {steps: 3, halved: true, points: [point, strong]}), tick(2, {held: true})),
+  );
+  assert.deepEqual(
+    ticks.map(({steps, halved, held, points}) => [steps, halved, held, points.length]),
+    [
+      [1, false, false, 1],
+      [3, true, false, 2],
+      [0, false, true, 0],
+    ],
+  );
+  assert.deepEqual(ticks[1].points, [point, strong]);
+  assert.deepEqual([byPoints, strongest], [true, 10]);
+  const springs = parseRecording(text(header, tick(0), tick(1)));
+  assert.deepEqual([springs.byPoints, springs.strongest], [false, 0]);
+});
+
+test('arrows stand at the points, in units and axes of the fixed body, as long as their force', () => {
+  // The fixed body lies 2 mm along x, and its x is the scene's y.
+  const fixed = [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0.002, 0, 0, 1];
+  const [first, second] = arrowsOf([point, {...point, force: [0, 0, 10]}], fixed, 0.001, 10);
+  [0, 1, 0].forEach((value, axis) => assert.ok(Math.abs(first.at[axis] - value) < 1e-9, `${first.at}`));
+  [3, 0, 4].forEach((value, axis) => assert.ok(Math.abs(first.force[axis] - value) < 1e-12, `${first.force}`));
+  assert.deepEqual([first.part, second.part], [0.5, 1]);
+  assert.equal(arrowsOf([{...point, force: [0, 0, 0]}], fixed, 0.001, 0)[0].part, 0);
 });
 
 test('a row is a position, and a rotation column by column', () => {
@@ -60,10 +94,14 @@ test('what is no recording of this version is refused, with what to do', () => {
   assert.throws(() => parseRecording('solid jaw\n'), /no recording.*Record one/);
   assert.throws(() => parseRecording('{"ist": 1}\n'), /no recording version/);
   assert.throws(() => parseRecording(text(tick(0))), /version 1.*record the scene again/);
-  assert.throws(() => parseRecording(text({...header, recording: 3}, tick(0))), /of version 3.*open it in a page/);
+  assert.throws(() => parseRecording(text({...header, recording: 4}, tick(0))), /of version 4.*open it in a page/);
+  assert.throws(() => parseRecording(text({...header, recording: 2}, tick(0))), /of version 2.*record the scene again/);
   assert.throws(() => parseRecording(text(header)), /no ticks/);
   assert.throws(() => parseRecording(text(header, '{"tick": 0', tick(1))), /Line 2 .*damaged/);
   assert.throws(() => parseRecording(text(header, tick(0), tick(1, {tool: [1, 2]}))), /Line 3 .*no tick/);
+  for (const points of [null, [1], [{...point, force: [1, 2]}], [{...point, gap: null}], [{...point, bodies: undefined}]]) {
+    assert.throws(() => parseRecording(text(header, tick(0, {points}))), /Line 2 .*no tick: it needs .* and points/);
+  }
   for (const number of [0, 1]) {
     assert.throws(() => parseRecording(text(header, tick(0), tick(1), tick(number))), /Line 4 .*after tick 1\. Record/);
   }
@@ -128,7 +166,7 @@ test('poses in metres become mesh units of the fixed body', () => {
   );
 });
 
-test('a scene of two bodies places them, the tool at the middle of the root cube', () => {
+test('a scene of two bodies places them, the tool at the middle of the held box or at its origin', () => {
   const scene =
     'unit = "mm"\n[fixed]\nshape = "upper jaw"\nseed = 3\nvoxel_size = 0.5\n[held]\nshape = "lower jaw"\nseed = 3\nvoxel_size = 0.5\n' +
     'translation = [0, 0, -5]  # open\n[effects.contact]\n';
@@ -138,14 +176,23 @@ test('a scene of two bodies places them, the tool at the middle of the root cube
   const facts = {info: {box_min: [-10, 0, 0], box_max: [90, 20, 30]}};
   const [fixed, held] = placedByScene(found, {fixed: facts, moving: facts}, header);
   assert.deepEqual(fixed.pose, [...identity]);
-  // 100 / 0.5 voxels lie in a cube of 256: 128 mm.
   assert.deepEqual(
     held.in_tool.map((value) => Number(value.toFixed(9))),
-    translation([-0.054, -0.064, -0.064]),
+    translation([-0.04, -0.01, -0.015]),
   );
-  const tool = translation([0.054, 0.064, 0.059]);
+  const tool = translation([0.04, 0.01, 0.01]);
   multiply(tool, held.in_tool).forEach((value, at) => assert.ok(Math.abs(value - held.pose[at]) < 1e-12));
-  assert.equal(sceneBodies({...header, scene: '[[fixed]]\nvoxel_size = 1\n[[fixed]]\nvoxel_size = 1\n[held]\nvoxel_size = 1\n'}), null);
+  const named = sceneBodies({
+    ...header,
+    scene: scene.replace('[0, 0, -5]', '[0, 0, -5]\norigin = [1, -2, 3]').replaceAll('voxel_size = 0.5\n', ''),
+  });
+  assert.deepEqual(
+    placedByScene(named, {fixed: facts, moving: facts}, header)[1].in_tool.map((value) => Number(value.toFixed(9))),
+    translation([-0.001, 0.002, -0.003]),
+  );
+  for (const other of ['[[fixed]]\n[[fixed]]\n[held]\n', '[fixed]\nfile = "a.ist"\n[held]\nfile = "b.stl"\n']) {
+    assert.equal(sceneBodies({...header, scene: other}), null);
+  }
 });
 
 test('the clock finds the tick of a time', () => {

@@ -196,8 +196,8 @@ void add_run(CLI::App& app) {
   command->add_flag("--json", options->json, "print one JSON object a line");
   add_example(
       *command,
-      "Prints how many ticks searched and how many kept pairs, how late they began, how long\n"
-      "they took, and the time of each effect.\n"
+      "Prints how many ticks searched and how many kept pairs, the contact points felt, how late\n"
+      "ticks began, how long they took, and the time of each effect.\n"
       "Ctrl-C reduces the force to zero, completes the recording and prints the report, with\n"
       "the exit codes of a run that ends by itself. A second Ctrl-C more than 1 s later\n"
       "completes the recording alone and ends the process within 1 s (exit code 130).\n"

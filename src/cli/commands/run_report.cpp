@@ -83,6 +83,10 @@ void print_report(const ServoReport& report, const Scene& scene, const Simulatio
                                 {"rate", scene.rate},
                                 {"missed", report.missed},
                                 {"held", report.held},
+                                {"halved", report.halved},
+                                {"in_contact", report.in_contact},
+                                {"most_points", report.most_points},
+                                {"largest_point_force", report.largest_point_force},
                                 {"faults", report.faults},
                                 {"fresh", report.fresh},
                                 {"kept", report.kept},
@@ -108,12 +112,18 @@ void print_report(const ServoReport& report, const Scene& scene, const Simulatio
     return;
   }
   for (const std::string& note : report.notes) fmt::print(stderr, "note: {}\n", note);
-  fmt::print("{} of {:.4g} µs: {} missed, {} incomplete, {}\n", counted(report.ticks, "tick"),
-             1e6 / scene.rate, counted(report.missed, "deadline"), counted(report.held, "answer"),
+  fmt::print("{} of {:.4g} µs: {} missed, {} held, {}\n", counted(report.ticks, "tick"),
+             1e6 / scene.rate, counted(report.missed, "deadline"), counted(report.held, "tick"),
              counted(report.faults, "fault"));
   if (report.fresh + report.kept + report.clear > 0) {
     fmt::print("contacts: {} by a search, {} among the pairs kept, {} inside a clearance\n",
                counted(report.fresh, "tick"), report.kept, report.clear);
+  }
+  if (report.steps > 0) {
+    fmt::print(
+        "contact points: {} with any, at most {} at once, at most {:.3g} N at one; {} halved\n",
+        counted(report.in_contact, "tick"), report.most_points, report.largest_point_force,
+        counted(report.halved, "tick"));
   }
   for (const HandChange& change : simulation.changes()) {
     fmt::print("{:.4g} s: {} {}: {}\n", change.time, change.attach ? "attach" : "release",

@@ -38,11 +38,8 @@ SphereTree whole(const SceneBody& body) {
 nlohmann::json header_of(const std::string& text, const std::filesystem::path& file) {
   const std::string line = text.substr(0, text.find('\n'));
   nlohmann::json header = nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false);
-  if (header.is_object() && header.contains("recording")) return header;
-  throw_error(ErrorCode::kInputInvalid,
-              "{}:1: no header of a recording: give a file that --record wrote as JSON "
-              "lines",
-              file.string());
+  RecordingHeader::check_format(header, file);
+  return header;
 }
 
 void add_bodies(const Scene& scene, const BuiltScene& built, ordered_json& block) {

@@ -16,8 +16,8 @@ using namespace answers;
 
 namespace {
 
-// 1 had no header.
-constexpr int kRecordingFormat = 2;
+// 1 had no header, and 2 no contact points.
+constexpr int kRecordingFormat = 3;
 
 void add_file(nlohmann::ordered_json& line, const char* name, const char* hash,
               const std::filesystem::path& file) {
@@ -45,7 +45,7 @@ nlohmann::ordered_json json_of_body(const SceneBody& body, const Simulation& sim
   throw_error(ErrorCode::kInputInvalid, "{}:1: {}", file.string(), what);
 }
 
-// The first line, from 1, in which two texts differ.
+// Returns the number of the first line that differs, from 1.
 std::size_t line_of_difference(const std::string& a, const std::string& b) {
   const auto end = std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first;
   return 1 + static_cast<std::size_t>(std::count(a.begin(), end, '\n'));
@@ -85,8 +85,8 @@ std::vector<std::string> RecordingHeader::body_names() const {
   return names;
 }
 
-void RecordingHeader::check(const nlohmann::json& recorded,
-                            const std::filesystem::path& file) const {
+void RecordingHeader::check_format(const nlohmann::json& recorded,
+                                   const std::filesystem::path& file) {
   const auto format = recorded.find("recording");
   if (format == recorded.end() || !format->is_number_integer()) {
     refuse(file,
@@ -94,10 +94,16 @@ void RecordingHeader::check(const nlohmann::json& recorded,
            "0.2 or later");
   }
   if (*format != kRecordingFormat) {
-    refuse(file, fmt::format("a recording of format {}, and this version replays {}: replay it "
-                             "with the version that recorded it",
-                             format->dump(), kRecordingFormat));
+    refuse(file,
+           fmt::format("a recording of format {}, and this version reads {}: record the scene "
+                       "again, or use the version that recorded it",
+                       format->dump(), kRecordingFormat));
   }
+}
+
+void RecordingHeader::check(const nlohmann::json& recorded,
+                            const std::filesystem::path& file) const {
+  check_format(recorded, file);
   const auto scene = recorded.find("scene");
   if (scene == recorded.end() || !scene->is_string()) refuse(file, "no text 'scene': record again");
   const auto text = scene->get<std::string>();

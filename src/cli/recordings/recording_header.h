@@ -28,9 +28,11 @@ class RecordingHeader {
   /// The length of a tick, s.
   [[nodiscard]] double dt() const;
 
-  /// Checks the header of a recording that this scene is to replay. Throws kInputInvalid, naming
-  /// `file` and a remedy, for a line that is no header, another version of the format, another
-  /// scene, and bodies whose files have changed.
+  /// Checks that a line is a header of this version of the format. Throws kInputInvalid with `file`
+  /// and a remedy.
+  static void check_format(const nlohmann::json& recorded, const std::filesystem::path& file);
+  /// Checks the header of a recording that this scene is to replay. Throws as check_format() does,
+  /// and for another scene and bodies whose files have changed.
   void check(const nlohmann::json& recorded, const std::filesystem::path& file) const;
 
  private:

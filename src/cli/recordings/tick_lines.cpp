@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -17,17 +19,34 @@ namespace {
 
 constexpr std::size_t kFlush = 1 << 16;  // bytes
 
-constexpr const char* kCsvHeader =
+constexpr const char* kCsvBegin =
     "tick,dt,device_known,device_x,device_y,device_z,device_xx,device_xy,device_xz,device_yx,"
     "device_yy,device_yz,device_zx,device_zy,device_zz,tool_x,tool_y,tool_z,tool_xx,tool_xy,"
     "tool_xz,tool_yx,tool_yy,tool_yz,tool_zx,tool_zy,tool_zz,force_x,force_y,force_z,torque_x,"
     "torque_y,torque_z,contacts,leaf_pairs,complete,proximity_complete,held,fault,"
-    "late_microseconds,microseconds,cpu_microseconds\n";
+    "steps,halved,points,points_force_x,points_force_y,points_force_z";
+// The columns of a point. Each has the prefix "pointN_".
+constexpr std::array kPointColumns{
+    "x",       "y",       "z",   "normal_x",       "normal_y",      "normal_z",   "force_x",
+    "force_y", "force_z", "gap", "triangle_fixed", "triangle_held", "body_fixed", "body_held"};
+constexpr const char* kCsvEnd = ",late_microseconds,microseconds,cpu_microseconds\n";
+
+std::string csv_header() {
+  std::string header = kCsvBegin;
+  for (std::size_t point = 1; point <= Tick::kMostPoints; ++point) {
+    for (const char* column : kPointColumns) header += fmt::format(",point{}_{}", point, column);
+  }
+  return header + kCsvEnd;
+}
+
+std::span<const ContactRecord> points_of(const TickRecord& record) {
+  return std::span(record.points).first(record.point_count);
+}
 
 double microseconds(std::int64_t nanoseconds) { return 1e-3 * static_cast<double>(nanoseconds); }
 
-// Calls `use` with name and value of each number of a tick behind its wrench; a value is empty if
-// its query was not made.
+// Calls `use` with name and value of each number between the wrench and the points. A value is
+// empty if its query was not made.
 template <typename Use>
 void for_each_number(const TickRecord& record, const Use& use) {
   const auto of = [](const auto* result, auto member) {
@@ -35,7 +54,7 @@ void for_each_number(const TickRecord& record, const Use& use) {
   };
   const auto* contacts = record.contacts ? &*record.contacts : nullptr;
   const auto* proximity = record.proximity ? &*record.proximity : nullptr;
-  // Where a deadline ended a query, its numbers are not repeatable.
+  // The clock decided the numbers of a query that a deadline ended.
   const bool known = contacts != nullptr && contacts->complete;
   use("contacts", of(known ? contacts : nullptr, &QueryResult::leaf_pairs));
   use("leaf_pairs", std::optional(record.leaf_pairs));
@@ -43,6 +62,13 @@ void for_each_number(const TickRecord& record, const Use& use) {
   use("proximity_complete", of(proximity, &QueryResult::complete));
   use("held", std::optional(record.held));
   use("fault", std::optional(record.fault));
+  use("steps", std::optional(record.steps));
+  use("halved", std::optional(record.halved));
+}
+
+// The same for the numbers behind the points.
+template <typename Use>
+void for_each_time(const TickRecord& record, const Use& use) {
   use("late_microseconds", std::optional(microseconds(record.late_ns)));
   use("microseconds", std::optional(microseconds(record.execution_ns)));
   use("cpu_microseconds", std::optional(microseconds(record.cpu_ns)));
@@ -58,14 +84,27 @@ void append_json(const TickRecord& record, std::string& lines) {
   }
   fmt::format_to(end, ",\"tool\":[{}],\"wrench\":[{}]", fmt::join(record.tool, ","),
                  fmt::join(record.wrench, ","));
-  for_each_number(record, [&](const char* name, const auto& value) {
+  const auto append = [&](const char* name, const auto& value) {
     fmt::format_to(end, ",\"{}\":", name);
     if (value) {
       fmt::format_to(end, "{}", *value);
     } else {
       lines += "null";
     }
-  });
+  };
+  for_each_number(record, append);
+  lines += ",\"points\":[";
+  const char* before = "";
+  for (const ContactRecord& point : points_of(record)) {
+    fmt::format_to(end,
+                   "{}{{\"position\":[{}],\"normal\":[{}],\"force\":[{}],\"gap\":{},"
+                   "\"triangles\":[{},{}],\"bodies\":[{},{}]}}",
+                   std::exchange(before, ","), fmt::join(point.position, ","),
+                   fmt::join(point.normal, ","), fmt::join(point.force, ","), point.gap,
+                   point.fixed_triangle, point.held_triangle, point.fixed, point.held);
+  }
+  lines += ']';
+  for_each_time(record, append);
   lines += "}\n";
 }
 
@@ -74,10 +113,23 @@ void append_csv(const TickRecord& record, std::string& lines) {
   fmt::format_to(end, "{},{},{},{},{},{}", record.tick, record.dt, record.device_known ? 1 : 0,
                  fmt::join(record.device, ","), fmt::join(record.tool, ","),
                  fmt::join(record.wrench, ","));
-  for_each_number(record, [&](const char*, const auto& value) {
+  const auto append = [&](const char*, const auto& value) {
     lines += ',';
     if (value) fmt::format_to(end, "{}", +*value);  // + makes a flag 0 or 1
-  });
+  };
+  for_each_number(record, append);
+  std::array<double, 3> force{};
+  for (const ContactRecord& point : points_of(record)) {
+    for (std::size_t axis = 0; axis < 3; ++axis) force[axis] += point.force[axis];
+  }
+  fmt::format_to(end, ",{},{}", record.point_count, fmt::join(force, ","));
+  for (const ContactRecord& point : points_of(record)) {
+    fmt::format_to(end, ",{},{},{},{},{},{},{},{}", fmt::join(point.position, ","),
+                   fmt::join(point.normal, ","), fmt::join(point.force, ","), point.gap,
+                   point.fixed_triangle, point.held_triangle, point.fixed, point.held);
+  }
+  lines.append((Tick::kMostPoints - record.point_count) * kPointColumns.size(), ',');
+  for_each_time(record, append);
   lines += '\n';
 }
 
@@ -85,7 +137,7 @@ void append_csv(const TickRecord& record, std::string& lines) {
 
 TickWriter::TickWriter(const std::filesystem::path& file, const RecordingHeader& header)
     : file_(file), csv_(file.extension() == ".csv"), names_(header.body_names()) {
-  lines_ += csv_ ? std::string(kCsvHeader) : header.line() + '\n';
+  lines_ += csv_ ? csv_header() : header.line() + '\n';
 }
 
 void TickWriter::append_change(const TickRecord& record) {
@@ -162,8 +214,17 @@ std::optional<RecordedTick> TickReader::next(const std::atomic<bool>& stop) {
     }
     if (complete == false) budget.tests = 0;
   };
-  limit("complete", tick.budget.contacts);
   limit("proximity_complete", tick.budget.proximity);
+  const nlohmann::json& held = value("held");
+  if (!held.is_boolean()) refuse("'held' is neither true nor false");
+  const nlohmann::json& steps = value("steps");
+  if (!steps.is_number_unsigned() || steps > std::numeric_limits<int>::max()) {
+    refuse("'steps' is not a whole number");
+  }
+  if (held == true) tick.budget.steps = steps.get<int>();
+  // A tick with steps makes them again in full. A tick without steps searches nothing.
+  Budget none;
+  limit("complete", steps == 0 ? tick.budget.contacts : none);
 
   const auto dt = line.find("dt");
   if (dt == line.end() || !dt->is_number()) refuse("no number 'dt'");

@@ -2,6 +2,8 @@
 
 #include <time.h>
 
+#include <algorithm>
+#include <cmath>
 #include <thread>
 
 #include "ist/base/throw_error.h"
@@ -98,6 +100,9 @@ class Loop {
     ++report_.ticks;
     report_.held += record.held ? 1U : 0U;
     report_.faults += record.fault ? 1U : 0U;
+    report_.halved += record.halved ? 1U : 0U;
+    report_.steps += static_cast<std::uint64_t>(record.steps);
+    count(std::span(record.points).first(record.point_count));
     if (record.contacts && record.contacts->complete) count(record.contacts->found);
     report_.late.record(nanoseconds(record.late_ns));
     report_.execution.record(nanoseconds(record.execution_ns));
@@ -105,6 +110,17 @@ class Loop {
     if (outputs_.records != nullptr) push(record);
     if (outputs_.snapshot != nullptr) outputs_.snapshot->publish(record);
     if (outputs_.progress != nullptr) outputs_.progress->add(1);
+  }
+
+  void count(std::span<const ContactRecord> points) noexcept {
+    if (points.empty()) return;
+    ++report_.in_contact;
+    report_.most_points = std::max(report_.most_points, static_cast<std::uint32_t>(points.size()));
+    for (const ContactRecord& point : points) {
+      const auto [x, y, z] = point.force;
+      report_.largest_point_force =
+          std::max(report_.largest_point_force, std::sqrt(x * x + y * y + z * z));
+    }
   }
 
   void count(Found found) noexcept {

@@ -19,7 +19,7 @@ constexpr double kWithin = 0.999;
 
 class Walk::Step {
  public:
-  // `left` is what is left of the scripts' time in this tick, s.
+  // `left`: the rest of the scripts' time in this tick, s.
   Step(const Parts& parts, Placement& tool, double& time, double left) noexcept
       : parts_(parts), tool_(tool), time_(time), part_(left) {
     look_ahead();
@@ -177,11 +177,12 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
       }
       is_whole = false;
       if (which == Which::kMinima) continue;
-      end.halved = true;
       for (int i = 0; i < kHalvings && !is_free; ++i) {
         fraction *= 0.5;
         is_free = step.try_part(fraction, *bounded, rest);
       }
+      // A replay does not make a step that ended nowhere.
+      if (is_free) end.halved = true;
     }
     if (!is_free) {
       hold();

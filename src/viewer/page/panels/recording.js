@@ -4,12 +4,13 @@ import {faultText} from '../engine/engine_client.js';
 import {placeAt, relative} from '../recording/placed_bodies.js';
 import {openRecordingFile} from '../recording/open_recording.js';
 import {indexAt, makePlayback, toolPath} from '../recording/playback.js';
+import {arrowsOf} from '../recording/points.js';
 import {identity} from '../pose.js';
 import {button, select, slider} from '../ui/controls.js';
 import {element} from '../ui/element.js';
 import {fileField} from '../ui/file_drop.js';
 import {plot} from '../ui/plot.js';
-import {facts} from '../ui/table.js';
+import {facts, table} from '../ui/table.js';
 import {count, short, unitWord} from '../words.js';
 import {unitOf} from '../follow.js';
 import {makePlayerView} from '../view/player_view.js';
@@ -22,7 +23,7 @@ import {makePlayerView} from '../view/player_view.js';
 
 const distancesAsked = 150;
 const speeds = ['0.05', '0.1', '0.25', '0.5', '1', '2'];
-// Of frames that stand alone, metres become the picture's millimetres.
+// Frames without bodies are drawn in millimetres.
 const frameScale = 1e3;
 // A spring of some hundred N/m draws the tool by fractions of a millimetre, which nobody sees.
 const handApart = 10;
@@ -65,6 +66,7 @@ export function makeRecordingPanel(context) {
   const time = {xLabel: 'time, s', lines: true, onPick: pick};
   const plots = {
     force: plot({...time, label: 'Force on the hand over time', yLabel: 'force, N'}),
+    points: plot({...time, label: 'Contact points over time', yLabel: 'contact points'}),
     contacts: plot({...time, label: 'Leaf pairs over time', yLabel: 'leaf pairs'}),
     distance: plot({...time, label: 'Distance over time', yLabel: 'distance'}),
   };
@@ -81,6 +83,9 @@ export function makeRecordingPanel(context) {
       playback?.jump(playback.at());
     },
   });
+  // A scene has contact or springs. Springs have leaf pairs in place of contact points.
+  const ofPoints = element('div', {}, element('h3', {}, 'Contact points'), plots.points.element),
+    ofPairs = element('div', {}, element('h3', {}, 'Leaf pairs'), plots.contacts.element);
   const now = element('div'),
     head = element('p');
   const player = element(
@@ -100,14 +105,14 @@ export function makeRecordingPanel(context) {
     now,
     element('h3', {}, 'Force on the hand'),
     plots.force.element,
-    element('h3', {}, 'Leaf pairs'),
-    plots.contacts.element,
+    ofPoints,
+    ofPairs,
     element('h3', {}, 'Distance, asked here'),
     plots.distance.element,
     element(
       'p',
       {class: 'quiet'},
-      'Short strokes on the time axis are late ticks. The body in its own colour is the tool, the faint pink one is where the hand draws it to.',
+      'Short strokes on the time axis are late ticks. The body in its own colour is the tool, the faint pink one is where the hand draws it to. Arrows are the forces on the tool at contact points: the longest and reddest is the largest of the recording.',
     ),
   );
   const panel = element(
@@ -160,6 +165,12 @@ export function makeRecordingPanel(context) {
       points: ticks.filter((tick) => tick.late).map((tick) => /** @type {[number, number]} */ ([tick.time, 0])),
     };
     plots.force.set([{name: 'force', colour: 'var(--series-1)', points: ticks.map((tick) => [tick.time, tick.force])}, late]);
+    ofPoints.hidden = !next.recording.byPoints;
+    ofPairs.hidden = next.recording.byPoints;
+    plots.points.set([
+      {name: 'contact points', colour: 'var(--series-3)', points: ticks.map((tick) => [tick.time, tick.points.length])},
+      late,
+    ]);
     plots.contacts.set([
       {name: 'leaf pairs', colour: 'var(--series-3)', points: ticks.map((tick) => [tick.time, tick.contacts ?? NaN])},
       late,
@@ -217,6 +228,7 @@ export function makeRecordingPanel(context) {
     return {
       tool: place(scene.moving, tool),
       hand: device && awayFrom(place(scene.moving, tool), place(scene.moving, device), apart),
+      fixed,
       others: scene.others.map(({index}) => place(index, tool)),
     };
   };
@@ -231,15 +243,59 @@ export function makeRecordingPanel(context) {
     play.textContent = playing ? 'Pause' : 'Play';
     scrub.set(at);
     for (const each of Object.values(plots)) each.mark(tick.time);
-    now.replaceChildren(tickFacts(tick, handAway(tick)));
-    if (!seen) return;
+    const {recording, scene} = opened;
     const poses = poseAt(at);
+    const arrows = arrowsOf(
+      tick.points,
+      poses?.fixed ?? [...identity],
+      poses && scene ? scene.metresPerUnit : 1 / frameScale,
+      recording.strongest,
+    );
+    now.replaceChildren(tickFacts(tick, handAway(tick), recording.byPoints), ...pointTable(tick, arrows));
+    if (!seen) return;
+    view.placePoints(arrows);
     if (poses) {
       view.placeBodies(poses.hand, poses.others);
       store.set({pose: poses.tool, dragging: playing});
     } else {
       view.placeFrames(scaled(tick.tool), tick.device && scaled(tick.device));
     }
+  }
+
+  /**
+   * @param {import('../recording/recording.js').Tick} tick
+   * @param {import('../recording/points.js').Arrow[]} arrows  of its points, as drawn
+   */
+  function pointTable({points}, arrows) {
+    if (!opened || points.length === 0) return [];
+    const {scene, recording} = opened;
+    const unit = scene ? unitWord(unitOf(store.get())) : 'mm';
+    const named = (/** @type {number} */ body) => recording.header.bodies[body]?.name ?? `body ${body}`;
+    const size = (/** @type {number} */ at) => Math.hypot(...points[at].force);
+    const order = [...points.keys()].sort((a, b) => size(b) - size(a));
+    return [
+      table(
+        `${points.length === 1 ? 'The contact point' : `${points.length} contact points`}, ${scene ? 'fixed' : 'scene'} coordinates`,
+        ['#', 'force, N', `position, ${unit}`, 'bodies', 'triangles', 'gap, µm'],
+        order.map((at, rank) => [
+          element(
+            'button',
+            {
+              type: 'button',
+              class: 'small',
+              'aria-label': `Look at contact point ${rank + 1}`,
+              onclick: () => stage.flyTo(arrows[at].at),
+            },
+            String(rank + 1),
+          ),
+          short(size(at), 3),
+          arrows[at].at.map((value) => value.toFixed(2).replace('-', '−')).join(' '),
+          points[at].bodies.map(named).join(', '),
+          points[at].triangles.map(String).join(', '),
+          short(1e6 * points[at].gap, 3),
+        ]),
+      ),
+    ];
   }
 
   /** @param {import('../recording/recording.js').Tick} tick */
@@ -326,14 +382,20 @@ function awayFrom(tool, hand, times) {
 /**
  * @param {import('../recording/recording.js').Tick} tick
  * @param {number | null} away  metres from the tool to the hand
+ * @param {boolean} byPoints
  */
-function tickFacts(tick, away) {
-  const notes = [tick.late && 'late', tick.held && 'an answer was incomplete', tick.fault && 'the device gave no pose'].filter(Boolean);
+function tickFacts(tick, away, byPoints) {
+  const notes = [
+    tick.late && 'late',
+    tick.held && 'the tool was held',
+    tick.halved && 'a step was shortened',
+    tick.fault && 'the device gave no pose',
+  ].filter(Boolean);
   return facts([
     ['Force', `${short(tick.force, 3)} N`],
     ['Torque', `${short(1000 * tick.torque, 3)} N mm`],
     ['Hand to tool', away === null ? 'not known' : `${short(1000 * away, 3)} mm`],
-    ['Leaf pairs', tick.contacts === null ? 'not known' : count(tick.contacts)],
+    byPoints ? ['Contact points', count(tick.points.length)] : ['Leaf pairs', tick.contacts === null ? 'not known' : count(tick.contacts)],
     ['Took', `${short(tick.microseconds, 3)} µs${notes.length ? ` (${notes.join(', ')})` : ''}`],
   ]);
 }

@@ -1,9 +1,11 @@
 /** A recording of `ist run`, read from its JSON lines (docs/recording-format.md). */
 
 import {identity} from '../pose.js';
+import {pointsOf} from './points.js';
 
 /** @typedef {import('../protocol.js').Pose} Pose */
 /** @typedef {import('../protocol.js').Line} Line */
+/** @typedef {import('./points.js').Point} Point */
 
 /**
  * @typedef {object} Recording
@@ -11,7 +13,9 @@ import {identity} from '../pose.js';
  * @property {number} dt          s
  * @property {Tick[]} ticks
  * @property {Change[]} changes
- * @property {string | null} cutOff  a sentence, where the last line is not whole
+ * @property {boolean} byPoints  the scene has contact: contact points and no leaf pairs
+ * @property {number} strongest   N, the largest force of a contact point
+ * @property {string | null} cutOff  a sentence if the last line is cut off
  */
 /**
  * @typedef {object} Tick
@@ -24,13 +28,16 @@ import {identity} from '../pose.js';
  * @property {number} torque      N m
  * @property {number | null} contacts  leaf pairs
  * @property {boolean} late       ticks before it are missing, or it ended after its period
- * @property {boolean} held       an answer was incomplete
+ * @property {Point[]} points     the contacts that push the tool
+ * @property {number} steps       of the tool; 0 with springs
+ * @property {boolean} held       the tool stayed at its last free pose
+ * @property {boolean} halved     a step was shortened
  * @property {boolean} fault
  * @property {number} microseconds
  */
 /** @typedef {{before: number, body: string, kind: 'attach' | 'release', status: string}} Change  `before`: index of the tick that it precedes */
 
-const version = 2;
+const version = 3;
 // A step takes less than a frame does.
 const linesAStep = 32;
 
@@ -77,7 +84,9 @@ export function* recordingSteps(text) {
     if (number % linesAStep === 0) yield end / text.length;
   }
   if (ticks.length === 0) throw new Error('The recording has a header, but no ticks: run the scene for longer.');
-  return {header, dt: header.dt, ticks, changes, cutOff};
+  const strongest = ticks.reduce((most, {points}) => points.reduce((largest, {force}) => Math.max(largest, Math.hypot(...force)), most), 0);
+  const byPoints = ticks.some(({steps}) => steps > 0);
+  return {header, dt: header.dt, ticks, changes, byPoints, strongest, cutOff};
 }
 
 /**
@@ -154,7 +163,7 @@ function parsed(line, number) {
     const value = JSON.parse(line);
     if (value !== null && typeof value === 'object') return value;
   } catch {
-    // Named below, as what is JSON but no object.
+    // The error below names JSON that is no object, too.
   }
   throw new Error(`Line ${number} of the recording is damaged: record the scene again, or take the line out.`);
 }
@@ -179,7 +188,9 @@ function changeOf(line, before) {
 function tickOf(line, number, before) {
   const previous = before[before.length - 1];
   const row = (/** @type {unknown} */ value) => Array.isArray(value) && value.length === 12 && value.every(Number.isFinite);
+  const points = pointsOf(line.points);
   if (
+    !points ||
     !Number.isInteger(line.tick) ||
     !(line.dt > 0) ||
     !Array.isArray(line.wrench) ||
@@ -188,7 +199,7 @@ function tickOf(line, number, before) {
     (line.device !== null && !row(line.device))
   ) {
     throw new Error(
-      `Line ${number} of the recording is no tick: it needs tick, dt, tool, device (12 numbers each, or null) and wrench (6 numbers). Record the scene again.`,
+      `Line ${number} of the recording is no tick: it needs tick, dt, tool, device (12 numbers each, or null), wrench (6 numbers) and points. Record the scene again.`,
     );
   }
   const wrench = line.wrench.map((/** @type {unknown} */ value) => (typeof value === 'number' ? value : 0));
@@ -209,7 +220,10 @@ function tickOf(line, number, before) {
     contacts: line.contacts ?? null,
     late:
       (previous !== undefined && line.tick > previous.tick + 1) || (line.late_microseconds ?? 0) + (line.microseconds ?? 0) > line.dt * 1e6,
+    points,
+    steps: line.steps ?? 0,
     held: line.held === true,
+    halved: line.halved === true,
     fault: line.fault === true,
     microseconds: line.microseconds ?? NaN,
   };

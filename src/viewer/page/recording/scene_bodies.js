@@ -1,6 +1,6 @@
 /**
- * The bodies of a recording that came without their meshes: read from the scene's text in its header,
- * where the scene has one fixed and one held body. Only what places them is read here.
+ * The bodies of a recording without meshes, read from the scene's text in its header. Only scenes of
+ * one fixed and one held body are read, and only the keys that place them.
  */
 
 import {inverse, multiply, translation} from '../pose.js';
@@ -14,13 +14,13 @@ import {inverse, multiply, translation} from '../pose.js';
  * @typedef {object} SceneBody
  * @property {string | null} shape
  * @property {number} seed
- * @property {number} voxelSize   scene's unit
  * @property {Pose} pose          mesh units to the scene, its unit
+ * @property {number[] | null} origin  of the tool, if the scene names one; mesh units
  */
 
 /**
  * @param {Line} header
- * @returns {{fixed: SceneBody, held: SceneBody} | null} null where the scene is another
+ * @returns {{fixed: SceneBody, held: SceneBody} | null} null if the scene is another
  */
 export function sceneBodies(header) {
   const tables = tablesOf(String(header.scene ?? ''));
@@ -37,9 +37,9 @@ export function sceneBodies(header) {
  */
 export function placedByScene({fixed, held}, facts, header) {
   const unit = header.unit;
-  const centre = rootCentre(facts.moving, held.voxelSize);
+  const centre = held.origin ?? middleOf(facts.moving);
   const heldPose = inMetres(held.pose, unit);
-  // The tool's frame has the held body's axes, and its origin in the middle of the root cube.
+  // The tool's frame has the held body's axes, and by default its origin is the middle of the mesh's box.
   const tool = multiply(heldPose, translation(centre.map((value) => value * unit)));
   const [fixedName, heldName] = header.bodies.map((/** @type {Line} */ body) => body.name);
   return [
@@ -50,15 +50,10 @@ export function placedByScene({fixed, held}, facts, header) {
 
 /**
  * @param {BodyFacts} facts
- * @param {number} voxelSize
- * @returns {number[]} the middle of the root cube: a power of two of voxels from the box's corner on
+ * @returns {number[]}
  */
-function rootCentre({info}, voxelSize) {
-  /** @type {number[]} */
-  const least = info.box_min;
-  const cells = Math.max(...least.map((from, axis) => Math.max(1, Math.ceil((info.box_max[axis] - from) / voxelSize))));
-  const edge = voxelSize * 2 ** Math.ceil(Math.log2(cells));
-  return least.map((from) => from + edge / 2);
+function middleOf({info}) {
+  return info.box_min.map((/** @type {number} */ least, /** @type {number} */ axis) => (least + info.box_max[axis]) / 2);
 }
 
 /**
@@ -98,16 +93,16 @@ function tablesOf(text) {
  */
 function bodyOf(table) {
   const numbers = (/** @type {string | undefined} */ text) => (text?.split('#')[0].match(/[-+]?[\d.]+(?:e[-+]?\d+)?/gi) ?? []).map(Number);
-  const [voxelSize] = numbers(table.voxel_size);
-  if (!(voxelSize > 0)) return null;
+  if (!table.shape && !table.voxel_size && /\.ist"/.test(table.file ?? '')) return null;
   const shift = table.translation ? numbers(table.translation) : [0, 0, 0];
   const turn = table.quaternion ? numbers(table.quaternion) : [1, 0, 0, 0];
-  if (shift.length !== 3 || turn.length !== 4) return null;
+  const origin = table.origin ? numbers(table.origin) : null;
+  if (shift.length !== 3 || turn.length !== 4 || (origin && origin.length !== 3)) return null;
   return {
     shape: /^"([^"]*)"/.exec(table.shape ?? '')?.[1] ?? null,
     seed: numbers(table.seed)[0] ?? 1,
-    voxelSize,
     pose: multiply(translation(shift), turned(turn)),
+    origin,
   };
 }
 

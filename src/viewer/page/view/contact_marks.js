@@ -3,6 +3,7 @@
 import * as THREE from 'three';
 
 import {wrenchAtMiddle} from '../wrench.js';
+import {makeArrow, pointArrow} from './arrow.js';
 
 /** @typedef {import('./stage.js').Stage} Stage */
 /** @typedef {import('../protocol.js').Contacts} Contacts */
@@ -40,8 +41,8 @@ export function makeContactMarks(stage) {
   normals.renderOrder = 1;
   const lines = new THREE.BufferAttribute(new Float32Array(6 * most), 3);
   normals.geometry.setAttribute('position', lines);
-  const force = arrow(forceColour),
-    torque = arrow(torqueColour);
+  const force = makeArrow(forceColour),
+    torque = makeArrow(torqueColour);
   group.add(dots, normals, force, torque);
   stage.fixedFrame.add(group);
   let chosen = -1;
@@ -59,8 +60,9 @@ export function makeContactMarks(stage) {
       placeDots(contacts, count);
       const wrench = wrenchAtMiddle(contacts);
       const at = new THREE.Vector3(...wrench.at);
-      point(force, at, wrench.force, 0.3 * size);
-      point(torque, at, wrench.torque, 0.2 * size);
+      // The lengths are fixed. The panel has the amounts.
+      pointArrow(force, at, wrench.force, 0.3 * size);
+      pointArrow(torque, at, wrench.torque, 0.2 * size);
     }
     dots.instanceMatrix.needsUpdate = true;
     if (dots.instanceColor) dots.instanceColor.needsUpdate = true;
@@ -101,32 +103,4 @@ export function makeContactMarks(stage) {
       draw();
     },
   };
-}
-
-/** @param {number} colour */
-function arrow(colour) {
-  const made = new THREE.ArrowHelper(new THREE.Vector3(0, 0, 1), new THREE.Vector3(), 1, colour);
-  for (const part of [made.line, made.cone]) {
-    const material = /** @type {THREE.Material} */ (part.material);
-    material.depthTest = false;
-    material.transparent = true;
-    part.renderOrder = 3;
-  }
-  return made;
-}
-
-/**
- * Lengths say nothing of the amount, which stands in the panel: a force may be small or large.
- * @param {THREE.ArrowHelper} helper
- * @param {THREE.Vector3} from
- * @param {number[]} along
- * @param {number} length
- */
-function point(helper, from, along, length) {
-  const direction = new THREE.Vector3(...along);
-  helper.visible = direction.length() > 0;
-  if (!helper.visible) return;
-  helper.position.copy(from);
-  helper.setDirection(direction.normalize());
-  helper.setLength(length, 0.25 * length, 0.12 * length);
 }

@@ -1,8 +1,9 @@
-/** What a recording adds to the picture: the hand apart from the tool, and the other bodies. */
+/** A recording in the picture: the hand apart from the tool, the other bodies, and the contact points. */
 
 import * as THREE from 'three';
 
 import {makeBodyMesh} from './body_mesh.js';
+import {makePointArrows} from './point_arrows.js';
 
 /** @typedef {import('../protocol.js').BodyFacts} BodyFacts */
 /** @typedef {import('../protocol.js').Pose} Pose */
@@ -14,6 +15,7 @@ import {makeBodyMesh} from './body_mesh.js';
  * @property {(moving: BodyFacts | null, others: BodyFacts[], size: number) => void} set  null: frames alone are drawn
  * @property {(hand: Pose | null, places: Pose[]) => void} placeBodies  in the picture's coordinates
  * @property {(tool: Pose, hand: Pose | null) => void} placeFrames
+ * @property {(arrows: import('../recording/points.js').Arrow[]) => void} placePoints  before bodies or frames, which draw
  * @property {(path: number[]) => void} setPath  of the tool's frame: three numbers a point
  * @property {() => void} clear
  */
@@ -27,8 +29,11 @@ const handColour = 0xcc79a7,
  * @returns {PlayerView}
  */
 export function makePlayerView(stage) {
-  const group = new THREE.Group();
-  stage.fixedFrame.add(group);
+  const group = new THREE.Group(),
+    pointGroup = new THREE.Group();
+  stage.fixedFrame.add(group, pointGroup);
+  const points = makePointArrows(pointGroup);
+  let extent = 1;
   /** @type {BodyMesh | null} */
   let hand = null;
   /** @type {BodyMesh[]} */
@@ -42,10 +47,12 @@ export function makePlayerView(stage) {
     for (const each of hand ? [hand, ...others] : others) each.dispose();
     hand = null;
     others = [];
+    points.set([], extent);
   };
   return {
     set(moving, drawn, size) {
       empty();
+      extent = size;
       if (!moving) {
         for (const each of [toolFrame, handFrame]) each.scale.setScalar(size);
         group.add(toolFrame, handFrame, path);
@@ -73,8 +80,11 @@ export function makePlayerView(stage) {
       if (handPose) put(handFrame, handPose);
       stage.render();
     },
-    setPath(points) {
-      path.geometry.setAttribute('position', new THREE.Float32BufferAttribute(points, 3));
+    placePoints(arrows) {
+      points.set(arrows, extent);
+    },
+    setPath(places) {
+      path.geometry.setAttribute('position', new THREE.Float32BufferAttribute(places, 3));
       path.geometry.computeBoundingSphere();
     },
     clear() {

@@ -72,8 +72,8 @@ struct TickRecord {
 struct RecordedTick {
   std::uint64_t tick = 0;                ///< its number, from 0
   std::optional<Placement> device = {};  ///< empty: the device gave no pose
-  /// No tests for a query that a deadline ended. In a tick that was held, the steps that it made.
-  /// Else no limit.
+  /// A tick that was held has the steps that it made. A query that a deadline ended has no tests,
+  /// but a tick with steps has no limit of contacts. All else has no limit.
   TickBudget budget = {};
 };
 

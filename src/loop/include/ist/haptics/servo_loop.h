@@ -30,8 +30,7 @@ struct ServoOptions {
   /// Makes one tick each period. If false, ticks follow each other without a clock, and queries
   /// have no deadline.
   bool paced = true;
-  /// The fraction of a period, from the tick's release on, in which queries may search: above 0, at
-  /// most 1.
+  /// The fraction of a period for queries, from the tick's release on: above 0, at most 1.
   double query_time_fraction = 0.7;
   RealTimeOptions real_time = {};  ///< of a paced loop
 };
@@ -53,12 +52,17 @@ struct ServoReport {
       worst_effects{};                   ///< the time of the effects in that tick
   std::uint64_t ticks = 0;               ///< ticks made
   std::uint64_t missed = 0;              ///< ticks that ended after their period, or were skipped
-  std::uint64_t held = 0;                ///< ticks with incomplete contacts
+  std::uint64_t held = 0;                ///< Tick::held
+  std::uint64_t halved = 0;              ///< Tick::halved
+  std::uint64_t steps = 0;               ///< Tick::steps, in all ticks
+  std::uint64_t in_contact = 0;          ///< ticks with contacts that pushed the tool
+  std::uint32_t most_points = 0;         ///< the most contacts that pushed in a tick
+  double largest_point_force = 0;        ///< the largest force of one contact, N
   std::uint64_t faults = 0;              ///< ticks without a force: Tick::fault
   std::uint64_t fresh = 0,               ///< ticks whose contacts were found by a search
       kept = 0,                          ///< among the leaf pairs kept from earlier ticks
       clear = 0;                         ///< inside a clearance
-  std::uint64_t lost_records = 0;        ///< records for which the ring had no room
+  std::uint64_t lost_records = 0;        ///< records that found the ring full
   std::vector<std::string> notes;        ///< denied requests to the system, with cause and remedy
 };
 
