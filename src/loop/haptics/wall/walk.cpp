@@ -45,19 +45,21 @@ class Walk::Step {
   void go(const Vector6& motion) noexcept {
     tool_ = tool_.moved(motion);
     time_ += part_;
+    made_ = motion;
   }
 
   // Makes a part of a motion if its end is free. Returns whether it is.
   bool try_part(double fraction, const Vector6& motion, const Budget& budget) noexcept {
-    const Vector6 moved = push_ + fraction * (motion - push_);
-    const double way = parts_.tool.way(moved);
+    const Vector6 wanted = push_ + fraction * (motion - push_);
+    const double way = parts_.tool.way(wanted);
     if (part_ == 0 && way <= kStill * parts_.wall.settings().trust) return true;
-    const Placement there = tool_.moved(moved);
+    const Placement there = tool_.moved(wanted);
     place(time_ + part_, 0);
     const bool is_free = parts_.wall.is_free(parts_.bodies, there, way + drift_, budget);
     if (is_free) {
       tool_ = there;
       time_ += part_;
+      made_ = wanted;
     } else {
       look_ahead();
     }
@@ -81,6 +83,8 @@ class Walk::Step {
   }
 
   [[nodiscard]] double part() const noexcept { return part_; }
+  // The motion that the tool made.
+  [[nodiscard]] const Vector6& made() const noexcept { return made_; }
 
  private:
   void place(double time, double step) noexcept {
@@ -100,7 +104,7 @@ class Walk::Step {
   Placement& tool_;
   double& time_;
   double part_, drift_ = 0;
-  Vector6 push_ = Vector6::Zero();
+  Vector6 push_ = Vector6::Zero(), made_ = Vector6::Zero();
 };
 
 Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
@@ -172,7 +176,7 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
       is_whole = fraction == 1;
       is_free = step.try_part(fraction, *bounded, rest);
       if (is_free) {
-        effects.advance(input, *bounded);
+        effects.advance(input, step.made());
         break;
       }
       is_whole = false;
