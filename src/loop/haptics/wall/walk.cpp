@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "ist/base/ordered_vector.h"
+
 namespace ist {
 namespace {
 
@@ -14,6 +16,15 @@ constexpr double kStill = 1e-6;
 constexpr double kDriftPart = 0.5;
 // The part of a way that a step may go, for rounding.
 constexpr double kWithin = 0.999;
+
+// Returns the largest part of `step`, at most 1, after which `way` less it is no longer than `most`;
+// 0 if no part is.
+double part_within(const Eigen::Vector3d& way, const Eigen::Vector3d& step, double most) noexcept {
+  const double a = square_in_order(step), b = dot_in_order(way, step);
+  const double spare = std::max(0.0, most * most - square_in_order(way));
+  if (!(a > 0)) return 1;
+  return std::clamp((b + std::sqrt(b * b + a * spare)) / a, 0.0, 1.0);
+}
 
 }  // namespace
 
@@ -66,12 +77,13 @@ class Walk::Step {
     return is_free;
   }
 
-  // Returns the part of a motion that is as long as the trust. Fixed bodies that move push the tool
-  // by the least motion that obeys the bounds, and the rest of the motion is cut.
-  double fraction_of(const Vector6& motion) noexcept {
+  // Returns the part of a motion, no more than `part`, that is no longer than the trust. Fixed
+  // bodies that move push the tool by the least motion that obeys the bounds, and the rest of the
+  // motion is cut.
+  double fraction_of(const Vector6& motion, double part) noexcept {
     const double way = parts_.tool.way(motion), most = parts_.wall.trust() - drift_;
     push_.setZero();
-    if (way <= most) return 1;
+    if (way <= most && part == 1) return 1;
     if (drift_ > 0) {
       const double radius = std::max(parts_.tool.radius(), most);
       Matrix6 metric = Matrix6::Identity();
@@ -79,7 +91,7 @@ class Walk::Step {
       NearestMotion& bounds = parts_.wall.bounds();
       if (bounds.solve(metric, Vector6::Zero(), parts_.wall.tolerance())) push_ = bounds.motion();
     }
-    return kWithin * most / way;
+    return way <= most ? part : std::min(part, kWithin * most / way);
   }
 
   [[nodiscard]] double part() const noexcept { return part_; }
@@ -124,22 +136,34 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
   const int most = std::min(goal.steps, wall.settings().steps);
   while (end.steps < most) {
     Step step(parts_, tool, time, left);
-    const VirtualCoupling::Stretch stretch{motion_between(tool, goal.device),
-                                           goal.device_motion - motion_between(start, tool), dt};
+    const Vector6 ahead = goal.device_motion - motion_between(start, tool);
+    const VirtualCoupling::Stretch stretch{motion_between(tool, goal.device), ahead, dt};
     const Placement here = tool;
     const EffectInput input{here, contacts, goal.proximity, dt};
     const auto motion = [&](NearestMotion* bounds) {
       return body.motion(input, effects, coupling, stretch, bounds, wall.tolerance());
     };
 
+    // The part of a motion by which the coupling's stretch changes no more than by the device's way
+    // and by steps of the trust. A tool that leaves a contact returns to the hand at that rate.
+    const auto part_at_rate = [&](const Vector6& wanted) {
+      const double steps = wall.settings().steps * wall.settings().trust;
+      const double way = length_in_order(goal.device_motion.head<3>());
+      const double turn = length_in_order(goal.device_motion.tail<3>());
+      const double radius = std::max(body.radius(), steps);
+      return std::min(part_within(ahead.head<3>(), wanted.head<3>(), way + steps),
+                      part_within(ahead.tail<3>(), wanted.tail<3>(), turn + steps / radius));
+    };
+
     double wanted = 0;
     if (!near_) {
       contacts.clear();
-      const std::optional<Vector6> freely = motion(nullptr);
+      std::optional<Vector6> freely = motion(nullptr);
       if (!freely) {
         end.finite = false;
         return end;
       }
+      *freely *= part_at_rate(*freely);
       wanted = body.way(*freely) + step.drift();
       if (wall.is_clear(bodies, tool, wanted)) {
         step.go(*freely);
@@ -172,7 +196,7 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
         return end;
       }
       wall.note_contacts(bodies);
-      double fraction = step.fraction_of(*bounded);
+      double fraction = step.fraction_of(*bounded, part_at_rate(*bounded));
       is_whole = fraction == 1;
       is_free = step.try_part(fraction, *bounded, rest);
       if (is_free) {
