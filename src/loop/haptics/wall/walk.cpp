@@ -17,8 +17,8 @@ constexpr double kDriftPart = 0.5;
 // The part of a way that a step may go, for rounding.
 constexpr double kWithin = 0.999;
 
-// Returns the largest part of `step`, at most 1, after which `way` less it is no longer than `most`;
-// 0 if no part is.
+// Returns the largest part of `step`, at most 1, after which `way` less it is no longer than
+// `most`; 0 if no part is.
 double part_within(const Eigen::Vector3d& way, const Eigen::Vector3d& step, double most) noexcept {
   const double a = square_in_order(step), b = dot_in_order(way, step);
   const double spare = std::max(0.0, most * most - square_in_order(way));
@@ -91,8 +91,22 @@ class Walk::Step {
       NearestMotion& bounds = parts_.wall.bounds();
       if (bounds.solve(metric, Vector6::Zero(), parts_.wall.tolerance())) push_ = bounds.motion();
     }
-    return way <= most ? part : std::min(part, kWithin * most / way);
+    if (way <= most) return part;
+    const double pushed = parts_.tool.way(push_), left = kWithin * most - pushed;
+    if (left > 0) return std::min(part, left / (way - pushed));
+    // A wedge pushes the tool farther than it moves itself: it waits for a part of its step.
+    const double whole = kWithin * parts_.wall.trust();
+    shorten(whole / (pushed + kWithin * drift_));
+    return 0;
   }
+
+  // Makes the step of fixed bodies, and the push by it, shorter.
+  void shorten(double by) noexcept {
+    part_ *= by;
+    push_ *= by;
+    look_ahead();
+  }
+  [[nodiscard]] bool is_pushed() const noexcept { return !push_.isZero(0); }
 
   [[nodiscard]] double part() const noexcept { return part_; }
   // The motion that the tool made.
@@ -145,14 +159,15 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
     };
 
     // The part of a motion by which the coupling's stretch changes no more than by the device's way
-    // and by steps of the trust. A tool that leaves a contact returns to the hand at that rate.
-    const auto part_at_rate = [&](const Vector6& wanted) {
-      const double steps = wall.settings().steps * wall.settings().trust;
-      const double way = length_in_order(goal.device_motion.head<3>());
-      const double turn = length_in_order(goal.device_motion.tail<3>());
-      const double radius = std::max(body.radius(), steps);
-      return std::min(part_within(ahead.head<3>(), wanted.head<3>(), way + steps),
-                      part_within(ahead.tail<3>(), wanted.tail<3>(), turn + steps / radius));
+    // and by so many steps of the trust. A tool that leaves a contact returns to the hand at that
+    // rate.
+    const auto part_at_rate = [&](const Vector6& wanted, int steps) {
+      const double way = steps * wall.settings().trust;
+      const double turn = way / std::max(body.radius(), way);
+      const Vector6& device = goal.device_motion;
+      return std::min(
+          part_within(ahead.head<3>(), wanted.head<3>(), length_in_order(device.head<3>()) + way),
+          part_within(ahead.tail<3>(), wanted.tail<3>(), length_in_order(device.tail<3>()) + turn));
     };
 
     double wanted = 0;
@@ -163,7 +178,7 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
         end.finite = false;
         return end;
       }
-      *freely *= part_at_rate(*freely);
+      *freely *= part_at_rate(*freely, wall.settings().steps);
       wanted = body.way(*freely) + step.drift();
       if (wall.is_clear(bodies, tool, wanted)) {
         step.go(*freely);
@@ -196,7 +211,8 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
         return end;
       }
       wall.note_contacts(bodies);
-      double fraction = step.fraction_of(*bounded, part_at_rate(*bounded));
+      double fraction =
+          step.fraction_of(*bounded, near_ ? 1 : part_at_rate(*bounded, end.steps + 1));
       is_whole = fraction == 1;
       is_free = step.try_part(fraction, *bounded, rest);
       if (is_free) {
@@ -209,6 +225,10 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
       for (int i = 0; i < kHalvings && !is_free; ++i) {
         fraction *= 0.5;
         is_free = step.try_part(fraction, *bounded, rest);
+      }
+      for (int i = 0; i < kHalvings && !is_free && step.is_pushed(); ++i) {
+        step.shorten(0.5);
+        is_free = step.try_part(0, *bounded, rest);
       }
     }
     if (!is_free) {
