@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "ist/base/ordered_vector.h"
+
 namespace ist {
 namespace {
 
@@ -14,6 +16,15 @@ constexpr double kStill = 1e-6;
 constexpr double kDriftPart = 0.5;
 // The part of a way that a step may go, for rounding.
 constexpr double kWithin = 0.999;
+
+// Returns the largest part of `step`, at most 1, after which `way` less it is no longer than
+// `most`; 0 if no part is.
+double part_within(const Eigen::Vector3d& way, const Eigen::Vector3d& step, double most) noexcept {
+  const double a = square_in_order(step), b = dot_in_order(way, step);
+  const double spare = std::max(0.0, most * most - square_in_order(way));
+  if (!(a > 0)) return 1;
+  return std::clamp((b + std::sqrt(b * b + a * spare)) / a, 0.0, 1.0);
+}
 
 }  // namespace
 
@@ -45,31 +56,34 @@ class Walk::Step {
   void go(const Vector6& motion) noexcept {
     tool_ = tool_.moved(motion);
     time_ += part_;
+    made_ = motion;
   }
 
   // Makes a part of a motion if its end is free. Returns whether it is.
   bool try_part(double fraction, const Vector6& motion, const Budget& budget) noexcept {
-    const Vector6 moved = push_ + fraction * (motion - push_);
-    const double way = parts_.tool.way(moved);
+    const Vector6 wanted = push_ + fraction * (motion - push_);
+    const double way = parts_.tool.way(wanted);
     if (part_ == 0 && way <= kStill * parts_.wall.settings().trust) return true;
-    const Placement there = tool_.moved(moved);
+    const Placement there = tool_.moved(wanted);
     place(time_ + part_, 0);
     const bool is_free = parts_.wall.is_free(parts_.bodies, there, way + drift_, budget);
     if (is_free) {
       tool_ = there;
       time_ += part_;
+      made_ = wanted;
     } else {
       look_ahead();
     }
     return is_free;
   }
 
-  // Returns the part of a motion that is as long as the trust. Fixed bodies that move push the tool
-  // by the least motion that obeys the bounds, and the rest of the motion is cut.
-  double fraction_of(const Vector6& motion) noexcept {
+  // Returns the part of a motion, no more than `part`, that is no longer than the trust. Fixed
+  // bodies that move push the tool by the least motion that obeys the bounds, and the rest of the
+  // motion is cut.
+  double fraction_of(const Vector6& motion, double part) noexcept {
     const double way = parts_.tool.way(motion), most = parts_.wall.trust() - drift_;
     push_.setZero();
-    if (way <= most) return 1;
+    if (way <= most && part == 1) return 1;
     if (drift_ > 0) {
       const double radius = std::max(parts_.tool.radius(), most);
       Matrix6 metric = Matrix6::Identity();
@@ -77,10 +91,26 @@ class Walk::Step {
       NearestMotion& bounds = parts_.wall.bounds();
       if (bounds.solve(metric, Vector6::Zero(), parts_.wall.tolerance())) push_ = bounds.motion();
     }
-    return kWithin * most / way;
+    if (way <= most) return part;
+    const double pushed = parts_.tool.way(push_), left = kWithin * most - pushed;
+    if (left > 0) return std::min(part, left / (way - pushed));
+    // A wedge pushes the tool farther than it moves itself: it waits for a part of its step.
+    const double whole = kWithin * parts_.wall.trust();
+    shorten(whole / (pushed + kWithin * drift_));
+    return 0;
   }
 
+  // Makes the step of fixed bodies, and the push by it, shorter.
+  void shorten(double by) noexcept {
+    part_ *= by;
+    push_ *= by;
+    look_ahead();
+  }
+  [[nodiscard]] bool is_pushed() const noexcept { return !push_.isZero(0); }
+
   [[nodiscard]] double part() const noexcept { return part_; }
+  // The motion that the tool made.
+  [[nodiscard]] const Vector6& made() const noexcept { return made_; }
 
  private:
   void place(double time, double step) noexcept {
@@ -100,7 +130,7 @@ class Walk::Step {
   Placement& tool_;
   double& time_;
   double part_, drift_ = 0;
-  Vector6 push_ = Vector6::Zero();
+  Vector6 push_ = Vector6::Zero(), made_ = Vector6::Zero();
 };
 
 Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
@@ -120,22 +150,35 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
   const int most = std::min(goal.steps, wall.settings().steps);
   while (end.steps < most) {
     Step step(parts_, tool, time, left);
-    const VirtualCoupling::Stretch stretch{motion_between(tool, goal.device),
-                                           goal.device_motion - motion_between(start, tool), dt};
+    const Vector6 ahead = goal.device_motion - motion_between(start, tool);
+    const VirtualCoupling::Stretch stretch{motion_between(tool, goal.device), ahead, dt};
     const Placement here = tool;
     const EffectInput input{here, contacts, goal.proximity, dt};
     const auto motion = [&](NearestMotion* bounds) {
       return body.motion(input, effects, coupling, stretch, bounds, wall.tolerance());
     };
 
+    // The part of a motion by which the coupling's stretch changes no more than by the device's way
+    // and by so many steps of the trust. A tool that leaves a contact returns to the hand at that
+    // rate.
+    const auto part_at_rate = [&](const Vector6& wanted, int steps) {
+      const double way = steps * wall.settings().trust;
+      const double turn = way / std::max(body.radius(), way);
+      const Vector6& device = goal.device_motion;
+      return std::min(
+          part_within(ahead.head<3>(), wanted.head<3>(), length_in_order(device.head<3>()) + way),
+          part_within(ahead.tail<3>(), wanted.tail<3>(), length_in_order(device.tail<3>()) + turn));
+    };
+
     double wanted = 0;
     if (!near_) {
       contacts.clear();
-      const std::optional<Vector6> freely = motion(nullptr);
+      std::optional<Vector6> freely = motion(nullptr);
       if (!freely) {
         end.finite = false;
         return end;
       }
+      *freely *= part_at_rate(*freely, wall.settings().steps);
       wanted = body.way(*freely) + step.drift();
       if (wall.is_clear(bodies, tool, wanted)) {
         step.go(*freely);
@@ -168,11 +211,12 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
         return end;
       }
       wall.note_contacts(bodies);
-      double fraction = step.fraction_of(*bounded);
+      double fraction =
+          step.fraction_of(*bounded, near_ ? 1 : part_at_rate(*bounded, end.steps + 1));
       is_whole = fraction == 1;
       is_free = step.try_part(fraction, *bounded, rest);
       if (is_free) {
-        effects.advance(input, *bounded);
+        effects.advance(input, step.made());
         break;
       }
       is_whole = false;
@@ -180,6 +224,10 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
       for (int i = 0; i < kHalvings && !is_free; ++i) {
         fraction *= 0.5;
         is_free = step.try_part(fraction, *bounded, rest);
+      }
+      for (int i = 0; i < kHalvings && !is_free && step.is_pushed(); ++i) {
+        step.shorten(0.5);
+        is_free = step.try_part(0, *bounded, rest);
       }
       // A replay does not make a step that ended nowhere.
       if (is_free) end.halved = true;

@@ -13,7 +13,11 @@ namespace ist {
 /// script move with it: they wait while the tool cannot make way.
 ///
 /// A step goes by the local minima of the distance first. If its end is not free, it goes by all
-/// features, then by halves of that motion. If nothing is free, the tool stays.
+/// features, then by halves of that motion. If nothing is free, the tool stays. Fixed bodies that
+/// push the tool farther than the trust make a part of their step.
+///
+/// The coupling's stretch changes in a tick by no more than the device's way and the trust times
+/// the steps, in turns by this length over the tool's radius.
 class Walk {
  public:
   /// The parts of a simulation. They must outlive the walk.

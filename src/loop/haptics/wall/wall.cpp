@@ -195,21 +195,26 @@ bool Wall::is_free(const HandBodies& bodies, const Placement& tool, double way,
 
 void Wall::note_contacts(const HandBodies& bodies) noexcept {
   noted_.clear();
-  for (const NearestMotion::Push& push : motion_.pushes()) {
-    if (!(push.force > 0)) continue;
-    const BoundOf& of = bounds_[push.bound];
+  const std::span<const NearestMotion::Push> pushes = motion_.pushes();
+  std::size_t contact_of[kMostContacts];  // of a push
+  for (std::size_t i = 0; i < pushes.size(); ++i) {
+    contact_of[i] = kMostContacts;
+    if (!(pushes[i].force > 0)) continue;
+    const BoundOf& of = bounds_[pushes[i].bound];
+    // The directions of a feature's friction cone push at one contact.
+    for (std::size_t k = 0; k < i; ++k) {
+      const BoundOf& other = bounds_[pushes[k].bound];
+      if (other.pair == of.pair && other.feature == of.feature) contact_of[i] = contact_of[k];
+    }
+    const Eigen::Vector3d force = scaled(pushes[i].force, of.along);
+    if (contact_of[i] < kMostContacts) {
+      noted_[contact_of[i]].force = sum(noted_[contact_of[i]].force, force);
+      continue;
+    }
     const Pair& pair = pairs_[of.pair];
     const BodyFrames frames = bodies.frames(pair.bodies.fixed, pair.bodies.held);
     const Feature& feature = pair.pair->features()[of.feature];
-    const Eigen::Vector3d force = scaled(push.force, of.along);
-    const auto same = std::find_if(noted_.begin(), noted_.end(), [&](const ContactPoint& contact) {
-      return contact.fixed == pair.bodies.fixed && contact.held == pair.bodies.held &&
-             contact.triangles == feature.triangles && contact.gap == frames.unit * feature.gap;
-    });
-    if (same != noted_.end()) {
-      same->force = sum(same->force, force);
-      continue;
-    }
+    contact_of[i] = noted_.size();
     noted_.push_back({frames.to_scene(feature.fixed_point), frames.fixed.rotation * feature.normal,
                       force, frames.unit * feature.gap, feature.triangles, pair.bodies.fixed,
                       pair.bodies.held});
