@@ -13,6 +13,8 @@
 namespace ist {
 namespace {
 
+// A corner is above a seam inside a plane region if its normal ascends by no more, a sine.
+constexpr double kSeam = 1e-6;
 // Cells along the diagonal of the moving body, if a list is thinned.
 constexpr double kCells = 64;
 
@@ -105,14 +107,21 @@ bool FeatureList::list(std::span<const NearPair> near, const Eigen::Isometry3d& 
 
 bool FeatureList::add(const NearPair& near, const SurfacePart& fixed, const SurfacePart& moving,
                       const Eigen::Isometry3d& pose, bool minima, double cell) noexcept {
-  if (minima && (fixed_.is_flat(fixed) || moving_.is_flat(moving))) return true;
+  const bool fixed_flat = fixed_.is_flat(fixed), moving_flat = moving_.is_flat(moving);
+  using Kind = SurfacePart::Kind;
+  // Rounding can leave a corner above a seam beside the faces on both sides.
+  if (minima && ((fixed_flat && (moving_flat || moving.kind != Kind::kVertex)) ||
+                 (moving_flat && fixed.kind != Kind::kVertex))) {
+    return true;
+  }
   if (seen_.is_full()) return false;
   if (!seen_.add({number_of(fixed), number_of(moving)})) return true;
   const Eigen::Vector3d normal = near.direction();
   if (!(square_in_order(normal) > 0)) return true;
   if (minima) {
     const Eigen::Vector3d back = -(pose.linear().transpose() * normal);
-    if (!fixed_.leaves(fixed, normal, kTolerance) || !moving_.leaves(moving, back, kTolerance)) {
+    if (!fixed_.leaves(fixed, normal, fixed_flat ? kSeam : kTolerance) ||
+        !moving_.leaves(moving, back, moving_flat ? kSeam : kTolerance)) {
       return true;
     }
   }

@@ -26,9 +26,9 @@ struct Feature {
 /// The features of two surfaces at a pose: each pair of parts once, in the order of the near pairs.
 ///
 /// A motion that keeps every feature's gap open keeps the surfaces apart, to first order. Only
-/// local minima of the distance are needed for that: features whose normal leaves both surfaces. A
-/// pair of parts inside plane regions is left out, because the corners of these regions say the
-/// same. All other features would catch at seams.
+/// local minima of the distance are needed for that: features whose normal leaves both surfaces.
+/// Edges and vertices inside plane regions are left out, because the corners of these regions say
+/// the same. They stay if a corner is right above them. All other features would catch at seams.
 class FeatureList {
  public:
   /// The normal of a local minimum may ascend by so much, a sine. Surfaces that are nearly parallel

@@ -63,11 +63,12 @@ double WallPair::clearance(const Eigen::Isometry3d& pose) const noexcept {
 WallPair::Search WallPair::find(const Eigen::Isometry3d& pose, double margin, double wanted,
                                 const Budget& budget) noexcept {
   if (is_searched_ && margin == margin_ && pose.matrix() == asked_.matrix() &&
-      (is_near() || !(wanted > clear_))) {
+      (is_near() || !(wanted > clear_) || wanted == wanted_)) {
     return {true, 0, Found::kKept};
   }
   near_count_ = 0;
   is_searched_ = false;
+  wanted_ = 0;
   listed_.reset();
   pose_ = project_to_rigid(pose).value_or(pose);
   margin_ = margin;
@@ -89,6 +90,7 @@ WallPair::Search WallPair::find(const Eigen::Isometry3d& pose, double margin, do
   search.tests += distance.sphere_tests;
   if (distance.complete) {
     clear_ = std::max(clear_, distance.distance.lower);
+    wanted_ = wanted;
   } else if (budget.has_deadline()) {
     search.complete = is_searched_ = false;  // the time decided how much is known
   }
@@ -102,6 +104,7 @@ void WallPair::list(FeatureList::Which which) noexcept {
 }
 
 bool WallPair::is_free(const Eigen::Isometry3d& pose, double way, const Budget& budget) noexcept {
+  if (!is_searched_) return false;
   if (!is_near()) return way < clear_;
   if (!has_all_) return query_.intersects(pose, budget).answer == Answer::kNo;
   const std::optional<Eigen::Isometry3d> rigid = project_to_rigid(pose);

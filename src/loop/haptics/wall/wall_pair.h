@@ -72,7 +72,7 @@ class WallPair {
 
   /// Returns whether the surfaces are certainly apart at a pose to which no point of the held body
   /// moves farther than `way` from the pose of find(). Precondition: the way is shorter than the
-  /// margin, or than the clearance.
+  /// margin, or than the clearance. False if the last find() did not come to its end.
   [[nodiscard]] bool is_free(const Eigen::Isometry3d& pose, double way,
                              const Budget& budget) noexcept;
 
@@ -92,6 +92,7 @@ class WallPair {
   std::optional<FeatureList::Which> listed_;
   bool has_all_ = true;  // `near_` has all pairs within the margin
   double pad_ = 0, margin_ = 0;
+  double wanted_ = 0;  // the clearance is known as well as this length asks
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();  // of find()
   double clear_ = 0;                                        // clearance at clear_pose_
   RelativePose clear_pose_{Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};
