@@ -64,7 +64,7 @@ TEST(WallPair, IsFreeOnlyWhereNothingIntersects) {
     }
     for (int k = 0; k < 50; ++k) {
       const Eigen::Isometry3d there = shaken(random, pose, way);
-      const bool is_free = bodies.pair.is_free(there, way, {});
+      const bool is_free = bodies.pair.meets(there, way, {}) == Answer::kNo;
       if (bodies.query.intersects(there).answer == Answer::kYes) {
         EXPECT_FALSE(is_free);
         ++meeting;
@@ -128,7 +128,7 @@ TEST(WallPair, WithoutABudgetIsIncomplete) {
     const Eigen::Isometry3d pose = bodies.near(random, 0.005);
     EXPECT_FALSE(bodies.pair.find(pose, 0.01, 1, none).complete);
     EXPECT_FALSE(bodies.pair.is_near());
-    EXPECT_FALSE(bodies.pair.is_free(pose, 0.001, {}));
+    EXPECT_EQ(bodies.pair.meets(pose, 0.001, {}), Answer::kUnknown);
     EXPECT_TRUE(bodies.pair.find(pose, 0.01, 1, {}).complete);
     EXPECT_TRUE(bodies.pair.is_near());
   }

@@ -16,6 +16,10 @@ constexpr double kStill = 1e-6;
 constexpr double kDriftPart = 0.5;
 // The part of a way that a step may go, for rounding.
 constexpr double kWithin = 0.999;
+// A motion that is so many times as long as the wanted one, or as the trust, opens no gap.
+constexpr double kLong = 8;
+// Ticks after a held one that ask no distance: it takes longer than near pairs.
+constexpr int kCareful = 8;
 
 // Returns the largest part of `step`, at most 1, after which `way` less it is no longer than
 // `most`; 0 if no part is.
@@ -59,22 +63,22 @@ class Walk::Step {
     made_ = motion;
   }
 
-  // Makes a part of a motion if its end is free. Returns whether it is.
-  bool try_part(double fraction, const Vector6& motion, const Budget& budget) noexcept {
+  // Makes a part of a motion if its end is free. Returns whether the tool would meet a body there.
+  Answer try_part(double fraction, const Vector6& motion, const Budget& budget) noexcept {
     const Vector6 wanted = push_ + fraction * (motion - push_);
     const double way = parts_.tool.way(wanted);
-    if (part_ == 0 && way <= kStill * parts_.wall.settings().trust) return true;
+    if (part_ == 0 && way <= kStill * parts_.wall.settings().trust) return Answer::kNo;
     const Placement there = tool_.moved(wanted);
     place(time_ + part_, 0);
-    const bool is_free = parts_.wall.is_free(parts_.bodies, there, way + drift_, budget);
-    if (is_free) {
+    const Answer meets = parts_.wall.meets(parts_.bodies, there, way + drift_, budget);
+    if (meets == Answer::kNo) {
       tool_ = there;
       time_ += part_;
       made_ = wanted;
     } else {
       look_ahead();
     }
-    return is_free;
+    return meets;
   }
 
   // Returns the part of a motion, no more than `part`, that is no longer than the trust. Fixed
@@ -141,12 +145,15 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
   End end;
   double left = bodies.has_scripts() ? dt : 0;
   wall.drop_contacts();
-  // A tick that is replayed makes the same steps, and knows no more.
+  // A tick that is replayed makes the same steps, and knows no more. The next ticks ask for less.
   const auto hold = [&] {
     end.held = true;
     near_ = false;
+    careful_ = kCareful;
     wall.forget();
   };
+  const bool asks_distance = careful_ == 0;
+  careful_ -= careful_ > 0 ? 1 : 0;
   const int most = std::min(goal.steps, wall.settings().steps);
   while (end.steps < most) {
     Step step(parts_, tool, time, left);
@@ -188,7 +195,7 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
       }
     }
     const std::uint64_t before = end.search.sphere_tests;
-    if (!wall.find(bodies, tool, wanted, rest, end.search, contacts)) {
+    if (!wall.find(bodies, tool, asks_distance ? wanted : 0, rest, end.search, contacts)) {
       hold();
       return end;
     }
@@ -199,11 +206,14 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
     step.limit_drift();
 
     using Which = FeatureList::Which;
-    bool is_free = false, is_whole = false;
+    Answer meets = Answer::kUnknown;
+    bool is_whole = false;
     for (const Which which : {Which::kMinima, Which::kAll}) {
       NearestMotion& bounds = wall.bound(bodies, tool, {which});
       std::optional<Vector6> bounded = motion(&bounds);
-      if (bounded && !bounds.is_feasible()) {
+      // A slot between nearly parallel walls opens by a far too long way along it.
+      const double longest = kLong * (body.way(stretch.length) + wall.settings().trust);
+      if (bounded && (!bounds.is_feasible() || body.way(*bounded) > longest)) {
         bounded = motion(&wall.bound(bodies, tool, {which, /*asks_for_skin=*/false}));
       }
       if (!bounded) {
@@ -214,25 +224,25 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
       double fraction =
           step.fraction_of(*bounded, near_ ? 1 : part_at_rate(*bounded, end.steps + 1));
       is_whole = fraction == 1;
-      is_free = step.try_part(fraction, *bounded, rest);
-      if (is_free) {
-        effects.advance(input, step.made());
-        break;
+      meets = step.try_part(fraction, *bounded, rest);
+      if (meets == Answer::kYes) {
+        is_whole = false;
+        if (which == Which::kMinima) continue;
+        for (int i = 0; i < kHalvings && meets == Answer::kYes; ++i) {
+          fraction *= 0.5;
+          meets = step.try_part(fraction, *bounded, rest);
+        }
+        for (int i = 0; i < kHalvings && meets == Answer::kYes && step.is_pushed(); ++i) {
+          step.shorten(0.5);
+          meets = step.try_part(0, *bounded, rest);
+        }
+        // A replay does not make a step that ended nowhere.
+        if (meets == Answer::kNo) end.halved = true;
       }
-      is_whole = false;
-      if (which == Which::kMinima) continue;
-      for (int i = 0; i < kHalvings && !is_free; ++i) {
-        fraction *= 0.5;
-        is_free = step.try_part(fraction, *bounded, rest);
-      }
-      for (int i = 0; i < kHalvings && !is_free && step.is_pushed(); ++i) {
-        step.shorten(0.5);
-        is_free = step.try_part(0, *bounded, rest);
-      }
-      // A replay does not make a step that ended nowhere.
-      if (is_free) end.halved = true;
+      if (meets == Answer::kNo) effects.advance(input, step.made());
+      break;
     }
-    if (!is_free) {
+    if (meets != Answer::kNo) {
       hold();
       return end;
     }

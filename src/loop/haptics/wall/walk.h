@@ -57,6 +57,7 @@ class Walk {
 
   Parts parts_;
   bool near_ = false;  // something was near in the last step
+  int careful_ = 0;    // ticks to come that ask no distance, since a tick was held
 };
 
 }  // namespace ist

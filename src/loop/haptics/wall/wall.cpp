@@ -19,8 +19,9 @@ constexpr double kFullFeatures = 10;
 
 // The directions of the friction cone, round a circle.
 constexpr double kDiagonal = 0.70710678118654752440;
-constexpr double kCircle[8][2] = {{1, 0},  {kDiagonal, kDiagonal},   {0, 1},  {-kDiagonal, kDiagonal},
-                                  {-1, 0}, {-kDiagonal, -kDiagonal}, {0, -1}, {kDiagonal, -kDiagonal}};
+constexpr double kCircle[8][2] = {
+    {1, 0},  {kDiagonal, kDiagonal},   {0, 1},  {-kDiagonal, kDiagonal},
+    {-1, 0}, {-kDiagonal, -kDiagonal}, {0, -1}, {kDiagonal, -kDiagonal}};
 
 // Two unit vectors across a unit vector and each other. Source: T. Duff et al., Building an
 // orthonormal basis, revisited, Journal of Computer Graphics Techniques 6(1), 2017.
@@ -184,21 +185,25 @@ NearestMotion& Wall::bound(const HandBodies& bodies, const Placement& tool,
   return motion_;
 }
 
-bool Wall::is_free(const HandBodies& bodies, const Placement& tool, double way,
+Answer Wall::meets(const HandBodies& bodies, const Placement& tool, double way,
                    const Budget& budget) noexcept {
-  return std::all_of(pairs_.begin(), pairs_.end(), [&](Pair& pair) {
-    if (!pair.asked) return true;
+  Answer answer = Answer::kNo;
+  for (Pair& pair : pairs_) {
+    if (!pair.asked) continue;
     const BodyFrames frames = bodies.frames(pair.bodies.fixed, pair.bodies.held);
-    return pair.pair->is_free(frames.query_pose(tool), way / frames.unit, budget);
-  });
+    const Answer found = pair.pair->meets(frames.query_pose(tool), way / frames.unit, budget);
+    if (found == Answer::kYes) return found;
+    if (found != Answer::kNo) answer = found;
+  }
+  return answer;
 }
 
 void Wall::note_contacts(const HandBodies& bodies) noexcept {
   noted_.clear();
   const std::span<const NearestMotion::Push> pushes = motion_.pushes();
-  std::size_t contact_of[kMostContacts];  // of a push
+  std::size_t contact_of[Tick::kMostPoints];  // of a push
   for (std::size_t i = 0; i < pushes.size(); ++i) {
-    contact_of[i] = kMostContacts;
+    contact_of[i] = Tick::kMostPoints;
     if (!(pushes[i].force > 0)) continue;
     const BoundOf& of = bounds_[pushes[i].bound];
     // The directions of a feature's friction cone push at one contact.
@@ -207,7 +212,7 @@ void Wall::note_contacts(const HandBodies& bodies) noexcept {
       if (other.pair == of.pair && other.feature == of.feature) contact_of[i] = contact_of[k];
     }
     const Eigen::Vector3d force = scaled(pushes[i].force, of.along);
-    if (contact_of[i] < kMostContacts) {
+    if (contact_of[i] < Tick::kMostPoints) {
       noted_[contact_of[i]].force = sum(noted_[contact_of[i]].force, force);
       continue;
     }

@@ -88,10 +88,10 @@ class Wall {
   /// Returns how far a bound may be violated, m.
   [[nodiscard]] double tolerance() const noexcept { return 1e-6 * settings_.skin; }
 
-  /// Returns whether the tool is certainly free at a pose.
+  /// Decides whether the tool meets a fixed body at a pose. kUnknown if a budget ended it.
   /// @param bodies at their places at that time
   /// @param way    as for is_clear(), from the pose of find()
-  [[nodiscard]] bool is_free(const HandBodies& bodies, const Placement& tool, double way,
+  [[nodiscard]] Answer meets(const HandBodies& bodies, const Placement& tool, double way,
                              const Budget& budget) noexcept;
 
   /// Notes the contacts that push at the motion that was solved last.

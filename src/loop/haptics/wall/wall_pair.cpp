@@ -37,6 +37,13 @@ QueryOptions of_query(const WallPair::Options& options) {
   return of;
 }
 
+Eigen::Isometry3d to_pose(const RelativePose& relative) noexcept {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = relative.rotation;
+  pose.translation() = relative.translation;
+  return pose;
+}
+
 RelativePose relative(const Eigen::Isometry3d& pose) noexcept {
   return {pose.linear(), pose.translation()};
 }
@@ -62,7 +69,8 @@ double WallPair::clearance(const Eigen::Isometry3d& pose) const noexcept {
 
 WallPair::Search WallPair::find(const Eigen::Isometry3d& pose, double margin, double wanted,
                                 const Budget& budget) noexcept {
-  if (is_searched_ && margin == margin_ && pose.matrix() == asked_.matrix() &&
+  if (is_searched_ && margin == margin_ && pose.linear() == asked_.rotation &&
+      pose.translation() == asked_.translation &&
       (is_near() || !(wanted > clear_) || wanted == wanted_)) {
     return {true, 0, Found::kKept};
   }
@@ -70,18 +78,18 @@ WallPair::Search WallPair::find(const Eigen::Isometry3d& pose, double margin, do
   is_searched_ = false;
   wanted_ = 0;
   listed_.reset();
-  pose_ = project_to_rigid(pose).value_or(pose);
+  pose_ = relative(project_to_rigid(pose).value_or(pose));
   margin_ = margin;
   const NearPairsResult near = query_.near_pairs(pose, margin, near_, budget);
   Search search{near.status == QueryStatus::kDone && near.complete, near.sphere_tests, near.found};
   if (!search.complete) return search;
   is_searched_ = true;
-  asked_ = pose;
+  asked_ = relative(pose);
   pad_ = near.pad;
   has_all_ = !near.truncated;
   near_count_ = static_cast<std::size_t>(std::min<std::uint64_t>(near.near_pairs, near_.size()));
   clear_ = is_near() ? 0 : margin;
-  clear_pose_ = relative(pose_);
+  clear_pose_ = pose_;
   if (is_near() || !(wanted > margin)) return search;
   // With a limit of tests the answer does not depend on earlier questions.
   Budget rest = budget;
@@ -99,20 +107,20 @@ WallPair::Search WallPair::find(const Eigen::Isometry3d& pose, double margin, do
 
 void WallPair::list(FeatureList::Which which) noexcept {
   if (listed_ == which) return;
-  list_.find(std::span(near_).first(near_count_), pose_, margin_, which);
+  list_.find(std::span(near_).first(near_count_), to_pose(pose_), margin_, which);
   listed_ = which;
 }
 
-bool WallPair::is_free(const Eigen::Isometry3d& pose, double way, const Budget& budget) noexcept {
-  if (!is_searched_) return false;
-  if (!is_near()) return way < clear_;
-  if (!has_all_) return query_.intersects(pose, budget).answer == Answer::kNo;
+Answer WallPair::meets(const Eigen::Isometry3d& pose, double way, const Budget& budget) noexcept {
+  if (!is_searched_) return Answer::kUnknown;
+  if (!is_near()) return way < clear_ ? Answer::kNo : Answer::kUnknown;
+  if (!has_all_) return query_.intersects(pose, budget).answer;
   const std::optional<Eigen::Isometry3d> rigid = project_to_rigid(pose);
-  if (!rigid) return false;
+  if (!rigid) return Answer::kUnknown;
   const RigidMove move(*rigid);
   const double size = box_.diagonal().norm() + pose.translation().cwiseAbs().maxCoeff();
   const double reach = way + pad_ + kRounding * size;
-  if (!(reach < margin_)) return query_.intersects(pose, budget).answer == Answer::kNo;
+  if (!(reach < margin_)) return query_.intersects(pose, budget).answer;
   for (const NearPair& pair : std::span(near_).first(near_count_)) {
     if (pair.distance > reach) break;
     const TriangleCorners first = corners_of(fixed_->surface.mesh(), pair.triangles.fixed);
@@ -120,9 +128,9 @@ bool WallPair::is_free(const Eigen::Isometry3d& pose, double way, const Budget& 
     for (Eigen::Vector3d& corner : second) corner = move(corner);
     const Eigen::Vector3d along = difference(pair.moving_point, pair.fixed_point);
     if (surely_parted(first, second, pair.fixed_point, along)) continue;
-    if (triangles_meet(first, second)) return false;
+    if (triangles_meet(first, second)) return Answer::kYes;
   }
-  return true;
+  return Answer::kNo;
 }
 
 std::size_t WallPair::bytes_for(const SphereTree& fixed, const SphereTree& held,

@@ -70,10 +70,11 @@ class WallPair {
   void list(FeatureList::Which which) noexcept;
   [[nodiscard]] std::span<const Feature> features() const noexcept { return list_.features(); }
 
-  /// Returns whether the surfaces are certainly apart at a pose to which no point of the held body
+  /// Decides whether the surfaces meet at a pose to which no point of the held body
   /// moves farther than `way` from the pose of find(). Precondition: the way is shorter than the
-  /// margin, or than the clearance. False if the last find() did not come to its end.
-  [[nodiscard]] bool is_free(const Eigen::Isometry3d& pose, double way,
+  /// margin, or than the clearance. kUnknown if the budget ended it, and if the last find() did not
+  /// come to its end.
+  [[nodiscard]] Answer meets(const Eigen::Isometry3d& pose, double way,
                              const Budget& budget) noexcept;
 
   [[nodiscard]] std::size_t bytes() const noexcept;
@@ -88,13 +89,13 @@ class WallPair {
   std::vector<NearPair> near_;
   std::size_t near_count_ = 0;
   bool is_searched_ = false;  // the last find() came to its end, for asked_ and margin_
-  Eigen::Isometry3d asked_ = Eigen::Isometry3d::Identity();
+  RelativePose asked_{Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};
   std::optional<FeatureList::Which> listed_;
   bool has_all_ = true;  // `near_` has all pairs within the margin
   double pad_ = 0, margin_ = 0;
   double wanted_ = 0;  // the clearance is known as well as this length asks
-  Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();  // of find()
-  double clear_ = 0;                                        // clearance at clear_pose_
+  RelativePose pose_{Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};  // of find(), rigid
+  double clear_ = 0;  // clearance at clear_pose_
   RelativePose clear_pose_{Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};
   FeatureList list_;
 };

@@ -116,11 +116,16 @@ struct EffectTime {
 /// pair of a fixed and a held body. Their wrenches are summed about the tool's origin. A body is
 /// named by its number: the fixed ones of the scene, then the held ones.
 ///
-/// A tick queries the contacts at the tool's pose, moves the tool to the balance of coupling and
-/// effects by at most one voxel, and returns the coupling's wrench. If the contacts are incomplete
-/// the tool returns to its last complete pose and contacts, and its step limit halves: lack of time
-/// never lowers resistance. If the proximity points are incomplete the last complete ones are used.
-/// Bodies that follow a script wait while the tool is held, and at a fault.
+/// With `contact` a tick moves the tool to the balance of coupling and effects in a few steps, each
+/// of which ends free, and returns the coupling's wrench. If the budget ends, the tool stays at its
+/// last free pose. docs/guarantees.md, The wall of the hand, has the method.
+///
+/// With `springs` a tick queries the contacts at the tool's pose, moves the tool to the balance by
+/// at most one voxel, and returns the coupling's wrench. If the contacts are incomplete the tool
+/// returns to its last complete pose and contacts, and its step limit halves.
+///
+/// Lack of time never lowers resistance. If the proximity points are incomplete the last complete
+/// ones are used. Bodies that follow a script wait while the tool is held, and at a fault.
 ///
 /// A tick allocates nothing, locks nothing and makes no system call. Cost: the queries, and 5 to 15
 /// µs. A simulation is used by one thread at a time.
