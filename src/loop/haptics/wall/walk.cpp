@@ -20,6 +20,8 @@ constexpr double kWithin = 0.999;
 constexpr double kLong = 8;
 // Ticks after a held one that ask no distance: it takes longer than near pairs.
 constexpr int kCareful = 8;
+// The least part of the trust in use.
+constexpr double kLeastPart = 1.0 / 16;
 
 // Returns the largest part of `step`, at most 1, after which `way` less it is no longer than
 // `most`; 0 if no part is.
@@ -150,12 +152,16 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
     end.held = true;
     near_ = false;
     careful_ = kCareful;
+    part_ = std::max(kLeastPart, 0.5 * part_);
     wall.forget();
   };
   const bool asks_distance = careful_ == 0;
   careful_ -= careful_ > 0 ? 1 : 0;
+  wall.shorten_steps(part_);
+  const double next_part = std::min(1.0, 2 * part_);
   const int most = std::min(goal.steps, wall.settings().steps);
-  while (end.steps < most) {
+  bool is_done = false;
+  while (end.steps < most && !is_done) {
     Step step(parts_, tool, time, left);
     const Vector6 ahead = goal.device_motion - motion_between(start, tool);
     const VirtualCoupling::Stretch stretch{motion_between(tool, goal.device), ahead, dt};
@@ -191,6 +197,7 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
         step.go(*freely);
         effects.advance(input, *freely);
         ++end.steps;
+        part_ = next_part;
         return end;
       }
     }
@@ -249,9 +256,13 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
     wall.keep_contacts();
     ++end.steps;
     left -= step.part();
-    if (is_whole && left <= 0) return end;
+    is_done = is_whole && left <= 0;
   }
-  if (most < wall.settings().steps) hold();
+  if (most < wall.settings().steps && !is_done) {
+    hold();
+  } else {
+    part_ = next_part;
+  }
   return end;
 }
 

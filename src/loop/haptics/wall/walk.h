@@ -58,6 +58,7 @@ class Walk {
   Parts parts_;
   bool near_ = false;  // something was near in the last step
   int careful_ = 0;    // ticks to come that ask no distance, since a tick was held
+  double part_ = 1;    // of the trust in use: each tick that is held halves it
 };
 
 }  // namespace ist

@@ -33,7 +33,8 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> across(const Eigen::Vector3d& n) noe
 
 }  // namespace
 
-Wall::Wall(const WallSettings& settings) : settings_(settings), motion_(kMostBounds) {
+Wall::Wall(const WallSettings& settings)
+    : settings_(settings), step_(settings.trust), motion_(kMostBounds) {
   bounds_.reserve(kMostBounds);
   contacts_.reserve(Tick::kMostPoints);
   noted_.reserve(Tick::kMostPoints);
@@ -92,7 +93,7 @@ bool Wall::find(const HandBodies& bodies, const Placement& tool, double wanted,
     pair.asked = true;
     const BodyFrames frames = bodies.frames(pair.bodies.fixed, pair.bodies.held);
     // Steps of the trust are shorter than a way for which the distance would have to be known.
-    const double in_steps = settings_.steps * settings_.trust;
+    const double in_steps = settings_.steps * step_;
     const double beyond = wanted > in_steps ? wanted + margin() : 0;
     const WallPair::Search search = pair.pair->find(frames.query_pose(tool), margin() / frames.unit,
                                                     beyond / frames.unit, rest);
@@ -109,7 +110,7 @@ bool Wall::find(const HandBodies& bodies, const Placement& tool, double wanted,
     result.distance->lower = std::min(result.distance->lower, gap);
     result.distance->upper =
         pair.pair->is_near() ? std::min(result.distance->upper, gap) : HUGE_VAL;
-    trust_ = std::min(trust_, pair.pair->is_near() ? settings_.trust : gap - settings_.skin);
+    trust_ = std::min(trust_, pair.pair->is_near() ? step_ : gap - settings_.skin);
     pair.pair->list(FeatureList::Which::kMinima);
     contacts.begin_pair(i);
     contacts.pairs().back().drift = bodies.drift(pair.bodies.fixed, tool);
@@ -131,7 +132,7 @@ void Wall::add_to(ToolContacts& contacts, const Pair& pair, std::size_t /*number
   for (const Feature& feature : features) {
     const double gap = frames.unit * feature.gap;
     if (gap <= kTouch * settings_.skin) contacts.count += 1;
-    const double part = std::clamp((margin() - gap) / settings_.trust, 0.0, 1.0);
+    const double part = std::clamp((margin() - gap) / step_, 0.0, 1.0);
     contacts.add({frames.to_scene(feature.moving_point) - tool.translation,
                   frames.fixed.rotation * feature.normal, margin() - gap, share * part});
   }

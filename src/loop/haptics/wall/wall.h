@@ -54,6 +54,9 @@ class Wall {
   [[nodiscard]] std::size_t pairs() const noexcept { return pairs_.size(); }
   [[nodiscard]] std::size_t bytes() const noexcept;
 
+  /// Makes steps near a fixed body shorter: this part of the trust. Less is near then.
+  void shorten_steps(double part) noexcept { step_ = part * settings_.trust; }
+
   /// Returns whether a motion of the tool certainly leaves it free, without any search.
   /// @param way of any held point against any fixed body, at most, m
   [[nodiscard]] bool is_clear(const HandBodies& bodies, const Placement& tool,
@@ -115,7 +118,7 @@ class Wall {
     Eigen::Vector3d along;
   };
 
-  [[nodiscard]] double margin() const noexcept { return settings_.skin + settings_.trust; }
+  [[nodiscard]] double margin() const noexcept { return settings_.skin + step_; }
   [[nodiscard]] double clearance(const HandBodies& bodies, const Pair& pair,
                                  const Placement& tool) const noexcept;
   void add_to(ToolContacts& contacts, const Pair& pair, std::size_t number,
@@ -124,6 +127,7 @@ class Wall {
              const Vector6& drift) noexcept;
 
   WallSettings settings_;
+  double step_;  // the trust in use, m
   std::vector<Pair> pairs_;
   std::vector<HandPair> far_;
   NearestMotion motion_;
