@@ -273,10 +273,12 @@ ist_status ist_query_near_parts(ist_query* query, const double pose[16], uint32_
     const ist::NearPairsResult found =
         held->query.near_parts(to_isometry(pose), {fixed, moving}, margin, all);
     if (found.status == ist::QueryStatus::kNoSuchTriangle) {
-      call.fail(IST_ARGUMENT_INVALID,
-                "fixed is {} and moving is {}: the meshes have {} and {} triangles", fixed, moving,
-                held->query.fixed().triangles()->triangles.size(),
-                held->query.moving().triangles()->triangles.size());
+      call.fail(
+          IST_ARGUMENT_INVALID,
+          "fixed is {} and moving is {}, and the meshes have {} and {} triangles: pass indices "
+          "below these numbers",
+          fixed, moving, held->query.fixed().triangles()->triangles.size(),
+          held->query.moving().triangles()->triangles.size());
     }
     if (!answered(call, found.status, pose)) return;
     const ist_near_pairs_result values = result_of(found, capacity);

@@ -81,7 +81,6 @@ ist_status ist_tree_build(const ist_mesh* mesh, const ist_build_options* options
                           ist_tree** tree) IST_NOEXCEPT {
   return guarded(__func__, [&](Call& call) {
     call.clear("tree", tree);
-    call.need("options", options);
     const ist_build_options known = read_sized(call, "options", options);
     const ist::BuildOptions build = read_build_options(call, known);
     const Follower follower = read_follower(call, known.progress);

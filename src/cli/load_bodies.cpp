@@ -259,7 +259,11 @@ Bodies load_bodies(const BodyFiles& files) {
   const bool voxels =
       files.voxels == Voxels::kMade || (files.voxels == Voxels::kNeeded && !triangles);
   for (const LoadedBody* body : {&fixed, &moving}) {
-    if (files.voxels == Voxels::kMade && body->tree) require_voxels(*body->tree, body->name());
+    if (files.voxels != Voxels::kMade || !body->tree || body->tree->has_voxels()) continue;
+    throw_error(ErrorCode::kVoxelsMissing,
+                "{}: the tree holds no voxels, and {} needs them: build it again by ist build with "
+                "--voxel-size, or name the mesh",
+                body->name(), files.voxels_for);
   }
   double voxel_size = files.voxel_size.value_or(0);
   if (!both_are_trees && !files.voxel_size && voxels) {

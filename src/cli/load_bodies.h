@@ -51,6 +51,7 @@ struct BodyFiles {
 
   std::filesystem::path fixed, moving;
   Voxels voxels = Voxels::kMade;
+  std::string voxels_for = "this command";  ///< with kMade: the option that needs them, for errors
   /// Of meshes that get voxels, mesh units; empty: 1/500 of Bodies::extent().
   std::optional<double> voxel_size;
   std::optional<SpherePolicy> policy;  ///< empty: the tightest that both have

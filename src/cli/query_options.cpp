@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <utility>
 
 #include "answers/refusals.h"
 #include "cli/common_options.h"
@@ -44,7 +45,7 @@ void add_engine_options(CLI::App& command, QuestionOptions& options) {
   command
       .add_option("--max-tests", options.questions.max_tests,
                   "stop each question after this number of tests; distance and depth are then "
-                  "wider intervals, and touch may be near")
+                  "wider intervals, and touch is unknown")
       ->transform(whole_number("the number of tests"));
   command.add_flag("--verify", options.verify,
                    "run each engine at each pose once more and check its leaf pairs against the "
@@ -74,10 +75,20 @@ void QuestionOptions::check() const {
             "goes with --engine simd: the reference finds all leaf pairs");
 }
 
-bool QuestionOptions::asks_voxels() const {
-  const bool engine = timing || repeat > 1 || verify || workers > 1 || !spheres.empty() ||
-                      !target.empty() || !engines.empty();
-  return engine || !contacts.empty() || files.voxel_size;
+const char* QuestionOptions::asks_voxels() const {
+  const std::pair<bool, const char*> options[] = {{timing, "--timing"},
+                                                  {repeat > 1, "--repeat"},
+                                                  {verify, "--verify"},
+                                                  {workers > 1, "--workers"},
+                                                  {!spheres.empty(), "--spheres"},
+                                                  {!target.empty(), "--target"},
+                                                  {!engines.empty(), "--engine"},
+                                                  {!contacts.empty(), "--contacts"},
+                                                  {files.voxel_size.has_value(), "--voxel-size"}};
+  for (const auto& [asks, name] : options) {
+    if (asks) return name;
+  }
+  return nullptr;
 }
 
 std::vector<std::string> QuestionOptions::asked_engines() const {
@@ -87,7 +98,11 @@ std::vector<std::string> QuestionOptions::asked_engines() const {
 BodyFiles QuestionOptions::body_files() const {
   BodyFiles named = files;
   if (!spheres.empty()) named.policy = sphere_policy(spheres);
-  if (!asks_voxels()) named.voxels = BodyFiles::Voxels::kNeeded;
+  if (const char* option = asks_voxels()) {
+    named.voxels_for = option;
+  } else {
+    named.voxels = BodyFiles::Voxels::kNeeded;
+  }
   return named;
 }
 

@@ -31,9 +31,9 @@ struct QuestionOptions {
 
   /// Throws a Refusal if options contradict each other, and kTargetMissing.
   void check() const;
-  /// Returns whether a question needs voxels: contacts, times and engines do. All other questions
+  /// Returns an option that needs voxels: contacts, times and engines do. nullptr: all questions
   /// are about triangles.
-  [[nodiscard]] bool asks_voxels() const;
+  [[nodiscard]] const char* asks_voxels() const;
   /// Returns the engines that answer, one or two.
   [[nodiscard]] std::vector<std::string> asked_engines() const;
   /// Returns the files with the chosen policy, and without voxels if no question needs them.

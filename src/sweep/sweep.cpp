@@ -89,13 +89,12 @@ std::shared_ptr<const Sweep::Bodies> Sweep::bodies() const {
         Bodies{load_tree(fixed, file_.spheres), load_tree(moving, file_.spheres)});
     require_answers(fixed, moving, loaded->moving);
     require_answers(moving, fixed, loaded->fixed);
-    if (file_.questions.penetration) {
-      require_triangles(loaded->fixed, "the fixed body");
-      require_triangles(loaded->moving, "the moving body");
-    }
-    if (file_.questions.leaf_pairs || file_.questions.contacts) {
-      require_voxels(loaded->fixed, "the fixed body");
-      require_voxels(loaded->moving, "the moving body");
+    for (const auto& [body, tree] :
+         {std::pair(&fixed, &loaded->fixed), {&moving, &loaded->moving}}) {
+      const std::string name = fmt::format("{}: {}", body->place, body->file.string());
+      if (file_.questions.penetration) require_triangles(*tree, name);
+      if (file_.questions.leaf_pairs || file_.questions.contacts) require_voxels(*tree, name);
+      if (file_.spheres) tree->require(*file_.spheres, name);
     }
     const std::string reason =
         contradiction(loaded->moving, moving.file.string(), loaded->fixed, fixed.file.string());

@@ -28,6 +28,7 @@ struct BodyKeys {
 BodyKeys keys_of(TableReader& sweep, std::string_view name) {
   if (sweep.is_text(name)) return {std::nullopt, name};
   TableReader table = sweep.table(name);
+  table.may_have({"file", "tree", "hash", "voxel_size", "unit", "frame"});
   // Older sweep files have `tree`.
   const bool is_older = table.has("tree");
   if (is_older && table.has("file")) {

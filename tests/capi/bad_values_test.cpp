@@ -329,8 +329,8 @@ TEST_F(CMisuse, OfNearPairsIsToldAndNothingIsAnswered) {
   EXPECT_EQ(parts(12, 0, 9, near_pairs_, 4), "argument-invalid");
   EXPECT_EQ(parts(0, UINT32_MAX, 9, near_pairs_, 4), "argument-invalid");
   EXPECT_STREQ(ist_last_error_message(),
-               "ist_query_near_parts: fixed is 0 and moving is 4294967295: the meshes have 12 and "
-               "12 triangles");
+               "ist_query_near_parts: fixed is 0 and moving is 4294967295, and the meshes have 12 "
+               "and 12 triangles: pass indices below these numbers");
   EXPECT_EQ(parts(11, 11, 9, near_pairs_, 4), "ok");
   near_result_.struct_size = 8;
   EXPECT_EQ(

@@ -54,6 +54,22 @@ TEST(CAnswer, MayStayOpenWithoutTriangles) {
   EXPECT_EQ(name(ist_query_free(query)), "ok");
 }
 
+TEST(CTree, WithoutOptionsHasTheDefaults) {
+  ist_mesh* mesh = c_mesh(icosphere(2, 1));
+  ist_tree *none = nullptr, *zeros = nullptr;
+  const auto options = sized<ist_build_options>();
+  ASSERT_EQ(name(ist_tree_build(mesh, nullptr, &none)), "ok");
+  ASSERT_EQ(name(ist_tree_build(mesh, &options, &zeros)), "ok");
+  auto of_none = sized<ist_tree_info>(), of_zeros = sized<ist_tree_info>();
+  ASSERT_EQ(name(ist_tree_get_info(none, &of_none)), "ok");
+  ASSERT_EQ(name(ist_tree_get_info(zeros, &of_zeros)), "ok");
+  EXPECT_EQ(of_none.triangles, 320u);
+  EXPECT_EQ(std::memcmp(&of_none, &of_zeros, sizeof of_none), 0);
+  ist_tree_free(none);
+  ist_tree_free(zeros);
+  ist_mesh_free(mesh);
+}
+
 TEST(CAnswer, FollowsTheOptions) {
   ist_tree* tree = c_tree(icosphere(2, 1), 0.2);
   auto options = sized<ist_query_options>();

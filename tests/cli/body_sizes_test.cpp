@@ -103,10 +103,15 @@ TEST_F(BodySizes, OfTreesWithoutVoxelsAreNotAskedFor) {
          {std::vector<std::string>{"--contacts", path("out.csv")},
           {"--engine", "simd"},
           {"--verify"},
+          {"--timing"},
+          {"--workers", "2"},
           {"--spheres", "slab"}}) {
       const CommandResult refused = collide(fixed, moving, more);
       EXPECT_EQ(refused.exit_code, 2) << more[0];
-      EXPECT_TRUE(says(refused.err, "no voxels: build it with a voxel size")) << refused.err;
+      EXPECT_TRUE(says(refused.err, "the tree holds no voxels, and " + more[0] +
+                                        " needs them: build it again by ist build with "
+                                        "--voxel-size"))
+          << refused.err;
     }
   }
 }

@@ -240,9 +240,9 @@ TEST_F(Usage, OptionsOfExport) {
   refuses({"export", tree, "--what", "voxels", "-o", out}, "--level");
   refuses({"export", ball_tree("plain.ist", "table"), "--what", "spheres", "--level", "0",
            "--spheres", "tight", "-o", out},
-          "build it with --spheres tight");
+          "build it with spheres tight");
   refuses({"export", tree, "--what", "spheres", "--level", "0", "--spheres", "slab", "-o", out},
-          "build it with --spheres slab");
+          "build it with spheres slab");
   const auto refuses_name = [&](const char* what, const std::string& name, const char* remedy) {
     refuses({"export", tree, "--what", what, "--level", "0", "-o", name}, "-o " + name + remedy);
     EXPECT_FALSE(std::filesystem::exists(name));
@@ -283,9 +283,9 @@ TEST_F(Usage, SpheresThatATreeDoesNotHave) {
   const std::string tight = ball_tree(), plain = ball_tree("plain.ist", "table");
   const std::string slab = ball_tree("slab.ist", "slab"), list = poses({0});
   refuses({"collide", tight, plain, "--poses", list, "--spheres", "tight"},
-          "plain.ist: the tree holds no tight spheres: build it with --spheres tight");
+          "plain.ist: the tree holds no tight spheres: build it with spheres tight");
   refuses({"collide", slab, tight, "--poses", list, "--spheres", "slab"},
-          "ball.ist: the tree holds no slab spheres: build it with --spheres slab");
+          "ball.ist: the tree holds no slab spheres: build it with spheres slab");
   const auto spheres = [&](const std::string& fixed, const std::string& moving) {
     const auto result = ist_well({"collide", fixed, moving, "--poses", list, "--json"});
     return json_lines(result.out).at(0)["spheres"];

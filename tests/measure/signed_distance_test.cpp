@@ -385,6 +385,35 @@ TEST(DistanceMap, MovesTheVerticesOfOneBodyToTheOther) {
   for (const SurfaceDistance& one : to_moving) EXPECT_TRUE(std::isnan(one.distance));
 }
 
+TEST(DistanceMap, RefusesTreesOfOtherUnitsAndFrames) {
+  TriangleMesh mesh = box({0, 0, 0}, {1, 1, 1});
+  const auto in = [&](LengthUnit unit, PatientFrame frame) {
+    mesh.unit = unit;
+    mesh.frame = frame;
+    return build_tree(mesh);
+  };
+  const SphereTree mm = in(LengthUnit::kMillimetre, PatientFrame::kRas),
+                   inch = in(LengthUnit::kInch, PatientFrame::kRas),
+                   lps = in(LengthUnit::kMillimetre, PatientFrame::kLps),
+                   bare = body(box({0, 0, 0}, {1, 1, 1}));
+  const auto map = [](const SphereTree& a, const SphereTree& b) {
+    return error_of(
+        [&] { static_cast<void>(distance_map(a, b, Eigen::Isometry3d::Identity(), 1)); });
+  };
+  const auto units = map(mm, inch), frames = map(lps, mm);
+  ASSERT_TRUE(units && frames);
+  EXPECT_EQ(units->code(), ErrorCode::kArgumentInvalid);
+  EXPECT_STREQ(
+      units->what(),
+      "distance map: the body is in mm, and the other body is in inch: convert one mesh to "
+      "the unit of the other, and build its tree again");
+  EXPECT_STREQ(
+      frames->what(),
+      "distance map: the body is in the frame lps, and the other body is in ras: build both "
+      "in one frame");
+  EXPECT_FALSE(map(mm, mm) || map(mm, bare) || map(bare, lps));
+}
+
 TEST(SignedDistance, IsTheSameWithoutVoxels) {
   Random random(5);
   for (const TriangleMesh& mesh : {icosphere(2, 1), moved(box({0, 0, 0}, {4, 1, 2}), {90, 0, 7})}) {

@@ -294,6 +294,18 @@ TEST(ReadMesh, NamesFormatsThatItDoesNotRead) {
   EXPECT_TRUE(cause(blank, "a.lwo").starts_with("the content is in no supported format"));
 }
 
+TEST(ReadMesh, SaysThatATreeIsNoMesh) {
+  const std::string begin("\x89IST\r\n\x1A\n", 8);
+  for (const std::string& bytes : {begin, begin + std::string(2000, '\1')}) {
+    for (const char* name : {"upper.ist", "upper.stl", "upper"}) {
+      EXPECT_EQ(cause(bytes, name),
+                "the file is a tree of IST; read it by read_tree, ist_tree_load or ist.load, or "
+                "name the mesh that it was built from");
+    }
+  }
+  EXPECT_FALSE(cause(begin.substr(0, 7), "a").starts_with("the file is a tree"));
+}
+
 TEST(ReadMesh, NamesUtf16) {
   const std::string text = test::as_obj(kSoundBox);
   for (const bool big : {false, true}) {

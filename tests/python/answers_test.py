@@ -223,7 +223,12 @@ class Verbs(Jaws):
         self.assertTrue(gap.lower <= length <= gap.upper)
         self.assertAlmostEqual(parts.pairs["distance"][0], length, places=9)
         np.testing.assert_allclose(gap.direction * length, way, rtol=0, atol=1e-12)
+        self.assertEqual(gap._fields[-4:], ("nearest_fixed", "nearest_moving", "direction", "triangles"))
+        self.assertIn(f"triangles=({fixed}, {moving})", repr(gap))
+        self.assertNotIn("memory", repr(gap) + repr(self.query.contacts(JAW_POSES[2])))
+        kept = gap.nearest_fixed.copy()
         met = self.query.distance(JAW_POSES[2], 0)
+        np.testing.assert_array_equal(gap.nearest_fixed, kept)  # a later answer leaves it alone
         np.testing.assert_array_equal(met.direction, [0, 0, 0])
         bare = ist.build(box([0, 0, 0], [2, 2, 2]), 0.5, keep_triangles=False)
         unknown = ist.Query(bare, bare).distance(pose_of([0, 0, 1], 0, [5, 0, 0]))

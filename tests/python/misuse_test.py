@@ -3,6 +3,8 @@
 import copy
 import os
 import pickle
+import subprocess
+import sys
 import unittest
 import warnings
 
@@ -40,7 +42,26 @@ class Names(Misuse):
         self.begins("Query.triangle_pairs", ist.Query(apart, apart).triangle_pairs, EYE)
         self.begins("ist.signed_distance", ist.signed_distance, apart, [[0, 0, 0]])
         self.begins("ist.Servo", ist.Servo, "/none.toml")
+        self.begins("Query.near_pairs", self.query.near_pairs, EYE, float("nan"))
+        self.begins("Query.near_pairs", self.query.near_pairs, EYE[:3], 1)
+        self.begins("Query.distance", self.query.distance, EYE, "wide")
+        self.begins("ist.distance_map", ist.distance_map, self.tree, self.tree, EYE[0])
+        self.begins("World.add", ist.World().add, self.tree, EYE[:2])
         self.begins("ist.Sweep", ist.Sweep, "/none.toml", "/tmp")
+
+
+    def test_wrong_types(self):
+        for name, call in (("ist.Query", lambda: ist.Query(1, self.tree)), ("ist.build", lambda: ist.build((VERTICES, FACES), progress=1))):
+            self.assertTrue(str(self.refuses(TypeError, "", call)).startswith(name + ": "))
+
+    def test_a_library_that_lacks_functions(self):
+        engine = os.path.join(os.path.dirname(os.environ.get("IST_LIBRARY", "")), "libist.so.0")
+        if not os.path.exists(engine):
+            self.skipTest("libist.so.0 is not beside the library")
+        run = subprocess.run(
+            [sys.executable, "-c", "import ist"], env={**os.environ, "IST_LIBRARY": engine}, stderr=subprocess.PIPE, text=True
+        )
+        self.assertIn("name libist_loop.so.0 in IST_LIBRARY", run.stderr)
 
 
 class Meshes(Misuse):
@@ -110,6 +131,10 @@ class Meshes(Misuse):
             file.write(b"nothing of use")
         self.refuses(ist.InputError, "empty.stl", ist.read_mesh, empty)
         self.refuses(ist.InputError, "empty.stl", ist.load, empty)
+        tree = os.path.join(place, "tree.ist")
+        self.tree.save(tree)
+        for read in (ist.read_mesh, ist.build):
+            self.refuses(ist.InputError, ["tree.ist", "is a tree of IST", "ist.load"], read, tree)
         self.refuses(ist.InputError, "zero", ist.read_mesh, "a\0b.stl")
         self.refuses(TypeError, "", ist.read_mesh, 5)
         self.refuses(ist.FileError, "folder", self.tree.save, os.path.join(place, "no", "folder.ist"))

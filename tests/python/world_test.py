@@ -169,8 +169,14 @@ class Worlds(Refusals):
             several.add(tree, pose)
         for world in (self.world, several):
             world.reserve()
-        for question in ("intersects", "contacts", "distances"):
+        for question in ("intersects", "contacts", "distance"):
             self.assertEqual(several.ask(question).pairs.tobytes(), self.world.ask(question).pairs.tobytes())
+
+    def test_a_distance_has_the_name_that_a_query_gives_it(self):
+        self.world.reserve()
+        named = self.world.ask("distance", tolerance=0.1).pairs.tobytes()
+        self.world.forget()
+        self.assertEqual(self.world.ask("distances", tolerance=0.1).pairs.tobytes(), named)
 
     def test_arrays_are_filled_in_place(self):
         self.world.reserve()
@@ -214,7 +220,7 @@ class Worlds(Refusals):
         refuses(["out"], self.world.intersects, out=np.zeros(3))
         refuses(["out"], self.world.leaf_pairs, into=np.zeros(3, ist.CONTACT))
         refuses(["question", "touches", "intersects"], self.world.ask, "touches")
-        refuses(["question is 'distance': did you mean 'distances'?"], self.world.ask, "distance")
+        refuses(["World.ask: question is 'distanc': did you mean 'distance'?"], self.world.ask, "distanc")
         refuses(["question is 7: pass one of near_pairs, "], self.world.ask, 7)
         refuses(["into", "distances"], self.world.ask, "distances", into=np.zeros(3, ist.LEAF_PAIR))
         refuses(["tolerance"], self.world.distance, -1)

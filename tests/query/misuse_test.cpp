@@ -75,6 +75,25 @@ TEST_F(Misuse, OfTreesInDifferentUnitsThrows) {
   EXPECT_EQ(error_name([&] { Query(mm, mm), Query(mm, tree_), Query(tree_, inch); }), "none");
 }
 
+TEST_F(Misuse, OfTreesThatContradictEachOtherThrowsInAReferenceQuery) {
+  TriangleMesh mesh = icosphere(2, 2);
+  const auto in = [&](LengthUnit unit, PatientFrame frame) {
+    mesh.unit = unit;
+    mesh.frame = frame;
+    return build_tree(mesh, {.voxel_size = 0.5});
+  };
+  const SphereTree mm = in(LengthUnit::kMillimetre, PatientFrame::kRas),
+                   inch = in(LengthUnit::kInch, PatientFrame::kRas),
+                   lps = in(LengthUnit::kMillimetre, PatientFrame::kLps);
+  const auto asked = [](const SphereTree& fixed, const SphereTree& moving) {
+    return [&] { ReferenceQuery(fixed, moving, SpherePolicy::kSlab); };
+  };
+  EXPECT_NE(refusal(asked(mm, inch)).find("is in mm, and the moving tree is in inch: convert"),
+            std::string::npos);
+  EXPECT_NE(refusal(asked(lps, mm)).find("in the frame lps"), std::string::npos);
+  EXPECT_EQ(error_name(asked(mm, mm)), "none");
+}
+
 TEST_F(Misuse, OfManifoldOptionsThrows) {
   const auto made = [&](const ManifoldOptions& options) {
     return refusal([&] { ContactManifold(tree_, tree_, SpherePolicy::kSlab, options); });
@@ -353,6 +372,17 @@ TEST(DistanceResult, SaysWhetherTheToleranceWasReached) {
   EXPECT_LT(sharp.narrowest, 1e-6);
   EXPECT_LE(sharp.distance.upper - sharp.distance.lower, sharp.narrowest * (1 + 1e-3));
   EXPECT_TRUE(of_exact.distance(shift({5, 0, 0}), 1.01 * sharp.narrowest).complete);
+  // Without triangles a tolerance below `narrowest` is reached where the bodies are near.
+  for (const double x : {3.9, 4.0, 4.2, 5.0, 7.0}) {
+    for (const double tolerance : {0.0, 0.5, 1.0, 3.0}) {
+      const DistanceResult found = of_plain.distance(shift({x, 0, 0}), tolerance);
+      EXPECT_LE(found.distance.upper - found.distance.lower,
+                std::max(tolerance, found.narrowest) * (1 + 1e-3));
+      EXPECT_EQ(found.complete, found.distance.upper - found.distance.lower <= tolerance);
+    }
+  }
+  EXPECT_TRUE(of_plain.distance(shift({3.9, 0, 0}), 1).complete);
+  EXPECT_GT(of_plain.distance(shift({3.9, 0, 0}), 1).narrowest, 1);
   const DistanceResult meeting = of_exact.distance(shift({1.9, 0.1, 0}), 0);
   EXPECT_TRUE(meeting.complete);
   EXPECT_EQ(meeting.narrowest, 0);

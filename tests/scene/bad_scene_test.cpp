@@ -154,6 +154,8 @@ TEST_F(BadSceneTest, LacksWhatItNeeds) {
       {"unit = \"mm\"", "", 1, "the file has no 'unit'", "give \"m\", \"cm\", \"mm\""},
       {"shape = \"box\"\nsize = [40, 40, 10]\n", "", 3, "[fixed] has no 'file'",
        "or shape = \"upper jaw\""},
+      {"shape = \"box\"\nsize = [40, 40, 10]\n", "mesh = \"x.ist\"\n", 4,
+       "'mesh' in [fixed] is unknown, and there is no 'file'", "give 'file', a mesh or a tree, or"},
       {"size = [40, 40, 10]\n", "", 3, "[fixed] has no 'size'", "[x, y, z], three numbers"},
       {"radius = 5\n", "", 7, "[held] has no 'radius'", "a number from 1e-12"},
       {"shape = \"sphere\"", "shape = \"cylinder\"", 7, "[held] has no 'height'", "a number from"},

@@ -155,6 +155,7 @@ TEST_F(MeshSweep, BadBodiesAreRefusedWithLineKeyAndRemedy) {
   dir_.write("flat.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n");
   write_tree(build_tree(icosphere(1, 1), {.voxel_size = 0.4, .keep_triangles = false}),
              dir_.path() / "bounds.ist");
+  write_tree(build_tree(icosphere(1, 1)), dir_.path() / "plain.ist");
   write_tree(
       build_tree(icosphere(1, 1), {.voxel_size = 0.4, .source = {.unit = LengthUnit::kMetre}}),
       dir_.path() / "metres.ist");
@@ -189,6 +190,16 @@ TEST_F(MeshSweep, BadBodiesAreRefusedWithLineKeyAndRemedy) {
        "",
        5,
        {"moving.stl is a mesh", "give [moving] a 'voxel_size'"}},
+      {asked,
+       body("fixed", "mesh = \"fixed.stl\""),
+       sound,
+       5,
+       {"'mesh' in [fixed] is unknown, and there is no 'file'", "give 'file'"}},
+      {"\"leaf_pairs\"",
+       body("fixed", "file = \"plain.ist\""),
+       body("moving", "file = \"moving.stl\"\nvoxel_size = 0.2"),
+       5,
+       {"'file' in [fixed]", "plain.ist: the tree holds no voxels", "build it with a voxel size"}},
       {asked, body("fixed", "file = \"text.stl\""), sound, 5, {"'file' in [fixed]", "text.stl"}},
       {asked, body("fixed", "file = \"flat.obj\""), sound, 5, {"'file' in [fixed]"}},
       {asked,

@@ -188,11 +188,27 @@ test('a swap keeps the bodies where they are to each other', async () => {
   assert.deepEqual(store.get().pose, translation([1, 2, 3]));
 });
 
+test('a body in inches beside a built-in jaw, which is in millimetres, gets a warning', async () => {
+  const {loader, said} = made({make_jaws: () => jaws, open: ({name}) => facts(name, 110, 'inch')});
+  await loader.makeJaws(1);
+  await loader.open(file('fixed', 'a.ist'));
+  assert.match(said.pop()[1], /^a\.ist is in inches, and lower in millimetres\. .*convert one of them/);
+});
+
+test('a build of two units says nothing of the voxel size', async () => {
+  const fault = 'query: the fixed tree is in mm, and the moving tree is in inch: convert one mesh';
+  const {loader, said} = made({make_jaws: () => jaws, build: () => new EngineError('argument-invalid', fault)});
+  await loader.makeJaws(1);
+  assert.equal(await loader.build(), false);
+  assert.deepEqual(said.pop(), ['error', `Q${fault.slice(1)}. There are no trees yet.`]);
+});
+
 test('bodies that cannot be in one unit get a warning, others get none', async () => {
   const pairs = [
     [['mm', 110], ['m', 110], /^a\.stl is in millimetres, and b\.stl in metres\. .*convert one of them, and open it again/],
     [[null, 110], ['inch', 4.3], /^a\.stl is 26 times as large as b\.stl: one of them may be in metres or inches/],
     [['mm', 110], [null, 110], null],
+    [[null, 4.3], ['inch', 4.3], /^b\.stl is in inches, and no unit is known of a\.stl, so inches are assumed\. .*choose that as the unit/],
     [['m', 0.11], ['m', 0.02], null],
   ];
   for (const [fixed, moving, sentence] of pairs) {

@@ -60,6 +60,7 @@ test('sentences describe a body', () => {
     'Extent 1 × 2 × 3; the file names no unit, so millimetres are assumed.',
     'Open (4 border edges), wound consistently: its inside is assumed from the winding.',
   ]);
+  assert.equal(infoSentences(mesh, 'inch')[1], 'Extent 1 × 2 × 3; the file names no unit, so inches are assumed.');
   const tree = {kind: 'tree', triangles: false, voxels: 9, voxel_size: 0.5, extent: [1, 2, 3], closed: null, unit: 'mm'};
   assert.match(infoSentences(tree).join(' '), /A tree of 9 voxels of 0.5, without triangles.* Extent 1 × 2 × 3 mm\.$/);
   assert.equal(

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <concepts>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,13 @@ template <std::integral Count>
 [[nodiscard]] std::string counted(Count count, std::string_view one, std::string_view many = {}) {
   if (count == 1) return fmt::format("1 {}", one);
   return many.empty() ? fmt::format("{} {}s", count, one) : fmt::format("{} {}", count, many);
+}
+
+/// Returns a number of bytes as messages quote it, such as "500 bytes" or "1.5 MB".
+[[nodiscard]] inline std::string in_bytes(std::uint64_t bytes) {
+  constexpr std::uint64_t kMegabyte = 1'000'000;
+  if (bytes < kMegabyte) return counted(bytes, "byte");
+  return fmt::format("{:.1f} MB", static_cast<double>(bytes) / kMegabyte);
 }
 
 }  // namespace ist

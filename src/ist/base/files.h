@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -10,6 +11,10 @@
 #include "ist/base/error.h"
 
 namespace ist {
+
+/// The first bytes of a tree file, by which the readers of trees and of meshes tell it.
+inline constexpr std::array<unsigned char, 8> kTreeFileMagic = {0x89, 'I',  'S',  'T',
+                                                                0x0D, 0x0A, 0x1A, 0x0A};
 
 /// Reads a regular file from front to back. Every function throws kFileUnreadable with the file and
 /// the cause. Reading has cancellation points (cancellation.h).

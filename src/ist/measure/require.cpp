@@ -11,7 +11,7 @@ void require_triangles(const SphereTree& tree, std::string_view body) {
   if (tree.triangles() != nullptr) return;
   throw_error(ErrorCode::kTrianglesMissing,
               "{}: the tree holds no triangles, of which measures are made: build it "
-              "with keep_triangles",
+              "with its triangles",
               body);
 }
 

@@ -2,11 +2,13 @@
 
 #include <cmath>
 
+#include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/rigid_move.h"
 #include "ist/base/throw_error.h"
 #include "ist/measure/point_search.h"
 #include "ist/measure/require.h"
+#include "ist/tree/mesh_source.h"
 
 namespace ist {
 namespace {
@@ -54,6 +56,8 @@ std::vector<SurfaceDistance> distance_map(const SphereTree& body, const SphereTr
   const ScopedFloatEnvironment environment;
   require_triangles(body, "body");
   require_triangles(other, "other");
+  const std::string reason = contradiction(body, "the body", other, "the other body");
+  if (!reason.empty()) throw Error(ErrorCode::kArgumentInvalid, "distance map: " + reason);
   require_reach(reach);
   const RigidMove move(require_rigid(pose, "pose"));
   std::vector<Vector> moved;

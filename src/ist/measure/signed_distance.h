@@ -55,7 +55,8 @@ struct SurfaceDistance {
 /// Measures the distances of all vertices of `body` from the surface of `other`, as
 /// signed_distance(), in the order of the vertices in `body.triangles()`. `pose` maps coordinates
 /// of `body` to those of `other`: of a query's pose the moving body's vertices take the pose
-/// itself, the fixed body's its inverse. Throws kPoseInvalid too.
+/// itself, the fixed body's its inverse. Throws kPoseInvalid too, and kArgumentInvalid if the trees
+/// have different units or different frames.
 [[nodiscard]] IST_API std::vector<SurfaceDistance> distance_map(const SphereTree& body,
                                                                 const SphereTree& other,
                                                                 const Eigen::Isometry3d& pose,

@@ -117,7 +117,7 @@ std::string lacks_common(const SphereTree& a, std::string_view a_name, const Sph
   if (!half(a, b) && !half(b, a)) return {};
   return fmt::format(
       "{} has no voxels, and {} no triangles: build the first with a voxel size, or the second "
-      "with keep_triangles",
+      "with its triangles",
       a_name, b_name);
 }
 

@@ -175,9 +175,10 @@ struct DistanceResult {
   bool complete = false;                    ///< the interval is no wider than the tolerance
   /// The distance of the surfaces; [0, infinity] without an answer.
   DistanceInterval distance{0, std::numeric_limits<double>::infinity()};
-  /// The width below which no tolerance can be reached here: the rounding of a distance of
-  /// triangles, of those found so far where a budget ended the search; without triangles, twice the
-  /// resolution.
+  /// The width that rounding or voxels allow here. If no budget ends the search, the interval is no
+  /// wider than the tolerance or this. It is the rounding of a distance of triangles, of those
+  /// found so far if a budget ended the search. Without triangles it is twice the resolution; the
+  /// interval may be narrower, and then reaches a smaller tolerance.
   double narrowest = 0;
   /// The nearest triangles that were found. Their distance lies in the interval. Empty without
   /// triangles, for bodies so far apart that the roots' interval stays, and if a budget ended the

@@ -150,7 +150,7 @@ std::uint64_t SphereTree::self_intersections() const {
   const ScopedFloatEnvironment environment;
   if (!parts_->triangles) {
     throw Error(ErrorCode::kTrianglesMissing,
-                "the tree holds no triangles: build it with keep_triangles");
+                "the tree holds no triangles: build it with its triangles");
   }
   return parts_->triangles->sides().self_intersections().pairs.size();
 }
@@ -184,7 +184,7 @@ void SphereTree::require(SpherePolicy policy, std::string_view body) const {
         body, to_string(policy));
   }
   throw_error(ErrorCode::kPolicyMissing,
-              "{}: the tree holds no {} spheres: build it with --spheres {}, or ask for "
+              "{}: the tree holds no {} spheres: build it with spheres {}, or ask for "
               "simple or table",
               body, to_string(policy), to_string(policy));
 }

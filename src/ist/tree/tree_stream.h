@@ -18,10 +18,6 @@
 
 namespace ist {
 
-/// The first bytes of a tree file.
-inline constexpr std::array<unsigned char, 8> kTreeFileMagic = {0x89, 'I',  'S',  'T',
-                                                                0x0D, 0x0A, 0x1A, 0x0A};
-
 /// Writes a tree file, to a disk or to memory: its preamble, then values and arrays in their memory
 /// layout. Throws kFileUnwritable.
 class TreeWriter {

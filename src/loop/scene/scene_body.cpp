@@ -74,6 +74,9 @@ BuiltInShape read_shape(TableReader& table, double unit) {
 }
 
 SceneBody read_body(TableReader& table, double unit) {
+  table.may_have({"name", "file", "shape", "seed", "opening", "radius", "thickness", "size",
+                  "height", "voxel_size", "spheres", "trust_normals", "quaternion", "translation",
+                  "attachable", "script", "open"});
   SceneBody body;
   body.name = table.path();
   if (table.has("name")) body.name = table.text("name", "a name, which no other body has");

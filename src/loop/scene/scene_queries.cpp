@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "ist/base/counted.h"
 #include "loop/haptics/effects/proximity_effect.h"
 #include "loop/scene/scene_lines.h"
 
@@ -84,10 +85,9 @@ class QueryMemory {
     if (bytes_ <= most_) return;
     const LoadedBody &fixed = of_.bodies[pair.fixed], &held = of_.bodies[pair.held];
     fail_at(of_.scene, fixed.table,
-            fmt::format("the queries up to that of {} and {} take {:.0f} MB, and {:.0f} MB are "
-                        "allowed: allow more with --max-memory, or take bodies out",
-                        fixed.named->name, held.named->name, 1e-6 * static_cast<double>(bytes_),
-                        1e-6 * static_cast<double>(most_)));
+            fmt::format("the queries up to that of {} and {} take {}, and {} are allowed: "
+                        "allow more with --max-memory, or take bodies out",
+                        fixed.named->name, held.named->name, in_bytes(bytes_), in_bytes(most_)));
   }
 
  private:

@@ -293,6 +293,12 @@ void TableReader::refuse_misspelt() const {
 
 void TableReader::fail_missing(std::string_view key, std::string_view what) const {
   refuse_misspelt();
+  for (const TomlEntry& each : table_.entries) {
+    if (keys_.empty() || std::find(keys_.begin(), keys_.end(), each.key) != keys_.end()) continue;
+    fail_line(file_, each.value.line,
+              fmt::format("'{}' in {} is unknown, and there is no '{}'", each.key, name(), key),
+              fmt::format("give '{}', {}", key, what));
+  }
   fail(key, fmt::format("{} has no '{}'", name(), key), fmt::format("give {}", what));
 }
 

@@ -82,7 +82,11 @@ class TableReader {
   /// Throws if the table has a key that a scene of an earlier version had. `now` completes the
   /// sentence that begins with the key. The key stays unknown.
   void refuse_old(std::string_view key, std::string_view now, std::string_view remedy) const;
-  /// Throws for a missing key, or for a key that looks like a misspelling of it.
+  /// Tells all keys that the table may have, before they are read: fail_missing() then names an
+  /// unknown one. The texts must outlive the reader.
+  void may_have(std::vector<std::string_view> keys) { keys_ = std::move(keys); }
+  /// Throws for a missing key, for a key that looks like a misspelling of it, or for one that
+  /// may_have() does not name.
   [[noreturn]] void fail_missing(std::string_view key, std::string_view what) const;
   /// Throws for a key that was not asked for, if it looks like a missing one.
   void refuse_misspelt() const;
@@ -111,7 +115,8 @@ class TableReader {
 
   const std::filesystem::path& file_;
   TomlTable& table_;
-  std::string path_;  // keys from the outermost table, joined by dots
+  std::string path_;                    // keys from the outermost table, joined by dots
+  std::vector<std::string_view> keys_;  // all of the table, if may_have() told them
 };
 
 }  // namespace ist

@@ -15,7 +15,7 @@ Path = Union[str, "PathLike[str]"]
 Spheres = Literal["default", "simple", "table", "tight", "slab"]
 Frame = Literal["unknown", "ras", "lps"]
 Question = Literal["intersects", "leaf_pairs", "distance", "contacts", "penetration"]
-WorldQuestion = Literal["near_pairs", "intersects", "leaf_pairs", "distances", "contacts", "triangle_pairs"]
+WorldQuestion = Literal["near_pairs", "intersects", "leaf_pairs", "distance", "distances", "contacts", "triangle_pairs"]
 F8 = NDArray[np.float64]
 U4 = NDArray[np.uint32]
 Records = NDArray[np.void]
@@ -147,10 +147,8 @@ class Contacts(NamedTuple):
     leaf_pairs: int
     area: float
     sphere_tests: int
-    memory_of_sums: bytearray
+    sums: Records
     rotation_error: float
-    @property
-    def sums(self) -> Records: ...
     def wrench(self, stiffness: float) -> Tuple[F8, F8, F8]: ...
 
 class Distance(NamedTuple):
@@ -160,15 +158,10 @@ class Distance(NamedTuple):
     narrowest: float
     sphere_tests: int
     rotation_error: float
-    memory_of_nearest: Optional[bytearray]
-    @property
-    def nearest_fixed(self) -> Optional[F8]: ...
-    @property
-    def nearest_moving(self) -> Optional[F8]: ...
-    @property
-    def direction(self) -> Optional[F8]: ...
-    @property
-    def triangles(self) -> Optional[Tuple[int, int]]: ...
+    nearest_fixed: Optional[F8]
+    nearest_moving: Optional[F8]
+    direction: Optional[F8]
+    triangles: Optional[Tuple[int, int]]
 
 class TrianglePairs(NamedTuple):
     pairs: Records

@@ -4,8 +4,6 @@ from typing import List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
-from ._c import CONTACT_SUMS, DistanceResult
-
 made = tuple.__new__  # made(LeafPairs, members): an answer, in half the time of LeafPairs(*members)
 
 
@@ -32,13 +30,8 @@ class Contacts(NamedTuple):
     leaf_pairs: int
     area: float  # sum of the weights of all leaf pairs, mesh units²
     sphere_tests: int
-    memory_of_sums: bytearray  # of `sums`, which is made of it when somebody asks
+    sums: np.ndarray  # CONTACT_SUMS, one element: the sums over all leaf pairs
     rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|; of a pair of a world, of both poses, the larger one
-
-    @property
-    def sums(self):
-        """The sums over all leaf pairs: CONTACT_SUMS, one element."""
-        return np.frombuffer(self.memory_of_sums, CONTACT_SUMS)
 
     def wrench(self, stiffness):
         """The springs' force on the moving body, their torque, and the point that the torque is about, fixed mesh
@@ -53,36 +46,14 @@ class Distance(NamedTuple):
     lower: float
     upper: float
     complete: bool  # the interval is at most as wide as the tolerance
-    narrowest: float  # no tolerance below this width can be reached here
+    narrowest: float  # a tolerance below this width may be missed here: rounding, or voxels if a tree has no triangles
     sphere_tests: int
     rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|
-    memory_of_nearest: Optional[bytearray]  # the library's struct, which the properties read
-
-    def _numbers(self, name, dtype, count):
-        memory = self.memory_of_nearest
-        return None if memory is None else np.frombuffer(memory, dtype, count, getattr(DistanceResult, name).offset)
-
-    @property
-    def nearest_fixed(self):
-        """The closest point of the nearest triangles that were found, on the fixed one: (3,), fixed mesh coordinates. None
-        without triangles, and if no pair was measured."""
-        return self._numbers("nearest_fixed", np.float64, 3)
-
-    @property
-    def nearest_moving(self):
-        """The same on the moving triangle; a common point if the triangles intersect."""
-        return self._numbers("nearest_moving", np.float64, 3)
-
-    @property
-    def direction(self):
-        """The unit vector from nearest_fixed to nearest_moving; 0 if the triangles intersect; or None."""
-        return self._numbers("direction", np.float64, 3)
-
-    @property
-    def triangles(self):
-        """The indices of these triangles, fixed and moving, or None."""
-        indices = self._numbers("nearest_triangles", np.uint32, 2)
-        return None if indices is None else (int(indices[0]), int(indices[1]))
+    nearest_fixed: Optional[np.ndarray]  # (3,), fixed mesh coordinates: the closest point of the nearest triangles that were
+    # found, on the fixed one; None without triangles, and if no pair was measured
+    nearest_moving: Optional[np.ndarray]  # the same on the moving triangle; a common point if the triangles intersect
+    direction: Optional[np.ndarray]  # (3,), unit vector from nearest_fixed to nearest_moving; 0 if the triangles intersect
+    triangles: Optional[Tuple[int, int]]  # the indices of these triangles, fixed and moving
 
 
 class TrianglePairs(NamedTuple):

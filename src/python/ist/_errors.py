@@ -85,9 +85,12 @@ def in_python(text):
 
 
 def error_of(status, text=None):
-    """Returns the exception of a status, with the library's last message unless a text is given."""
+    """Returns the exception of a status, with the library's last message unless a text is given. It begins with the function
+    that was called."""
     if text is None:
         text = in_python(LIBRARY.ist_last_error_message().decode("utf-8", "replace"))
+    else:
+        text = f"{_asked()}: {text}"
     error = KINDS.get(status, InputError)(text)
     error.code = status
     error.name = LIBRARY.ist_status_name(status).decode()
@@ -103,6 +106,11 @@ def check(status):
 def refuse(text):
     """Raises an InputError of this package's own: the argument never reached the library."""
     raise error_of(_c.IST_ARGUMENT_INVALID, text)
+
+
+def refuse_type(text):
+    """Raises a TypeError."""
+    raise TypeError(f"{_asked()}: {text}")
 
 
 def need_word(word, known, what):

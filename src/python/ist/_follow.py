@@ -5,7 +5,7 @@ import sys
 import threading
 
 from ._c import REPORT, Progress
-from ._errors import check
+from ._errors import check, refuse_type
 
 _hooks = threading.Lock()
 
@@ -19,7 +19,7 @@ class Follower:
 
     def __init__(self, progress=None):
         if progress is not None and not callable(progress):
-            raise TypeError(f"progress has to be a function of the part that is done, and is {type(progress).__name__}")
+            refuse_type(f"progress has to be a function of the part that is done, and is {type(progress).__name__}")
         self._progress = progress
         self._raised = None
         self._target = self._report

@@ -39,10 +39,15 @@ def load():
             prototype = getattr(library, function)
             prototype.restype, prototype.argtypes = result, arguments
     except AttributeError as error:
-        raise ImportError(
-            f"ist: {name} does not fit this package: {error}: install the library and the package of one version"
-        ) from None
+        raise ImportError(f"ist: {name} does not fit this package: {error}: {remedy_for(library)}") from None
     return library
+
+
+def remedy_for(library):
+    """Returns what to do about a library that lacks functions."""
+    if hasattr(library, "ist_tree_load") and not hasattr(library, "ist_jaw_create"):  # libist, without libist_loop
+        return f"name {SONAME} in IST_LIBRARY, which has all functions"
+    return "install the library and the package of one version"
 
 
 LIBRARY = load()

@@ -21,7 +21,7 @@ from ._c import (
     Penetration as PenetrationResult,
     RowsOptions,
 )
-from ._errors import check, need_word, refuse
+from ._errors import check, need_word, refuse, refuse_type
 from ._follow import Follower
 from ._library import LIBRARY
 from ._tree import need_tree
@@ -52,7 +52,7 @@ def penetration(self, pose, tolerance, *, last=None, points=0, seconds=0.0, prog
         before = None
         if last is not None:
             if not isinstance(last, Penetration):
-                raise TypeError(f"last is a {type(last).__name__}: pass an answer of penetration()")
+                refuse_type(f"last is a {type(last).__name__}: pass an answer of penetration()")
             before = PenetrationResult(
                 lower=last.lower,
                 upper=last.upper,

@@ -13,6 +13,7 @@ from ._answers import Contacts, Distance, LeafPairs, NearPairs, TrianglePairs, m
 from ._arrays import Room, address, budget_of, count_of, floats, number_of
 from ._c import (
     CONTACT,
+    CONTACT_SUMS,
     IST_FOUND_KEPT,
     IST_MOST_NEAR_PARTS,
     LEAF_PAIR,
@@ -58,9 +59,18 @@ read_leaf_pairs = reader(
     "rotation_error",
 )
 read_contacts = reader(QueryResult, "leaf_pairs contacts written sphere_tests complete? rotation_error")
+_POINTS = DistanceResult.nearest_fixed.offset
+_TRIANGLES = struct.Struct(f"={DistanceResult.nearest_triangles.offset}x2I").unpack_from
 read_distance = reader(DistanceResult, "lower upper sphere_tests complete? nearest_known? narrowest rotation_error")
 read_triangle_pairs = reader(TrianglePairsResult, "pairs written sphere_tests truncated? complete? rotation_error")
 read_near_pairs = reader(NearPairsResult, "pairs written sphere_tests truncated? complete? found pad rotation_error")
+
+
+def nearest_of(found):
+    """Returns the nearest points of a DistanceResult, the direction, and the triangles, which do not change with it."""
+    memory = bytearray(found)
+    numbers = np.frombuffer(memory, np.float64, 9, _POINTS)  # nearest_fixed, nearest_moving and direction lie in a row
+    return numbers[:3], numbers[3:6], numbers[6:], _TRIANGLES(memory)
 
 
 def options_of(spheres, workers, contacts, margin, front_pairs, target, near_pairs=0):
@@ -314,7 +324,7 @@ class Query(Lone):
                 raise error_of(status)
             leaf_pairs, count, written, tested, complete, off = read_contacts(self._found)
             sums = self._sums
-            return made(Contacts, (out[:written], count, complete, leaf_pairs, sums.weight, tested, bytearray(sums), off))
+            return made(Contacts, (out[:written], count, complete, leaf_pairs, sums.weight, tested, np.frombuffer(bytearray(sums), CONTACT_SUMS), off))
         finally:
             self._lock.release()
 
@@ -338,7 +348,8 @@ class Query(Lone):
             if status:
                 raise error_of(status)
             lower, upper, tested, complete, known, narrowest, off = read_distance(self._apart)
-            return made(Distance, (lower, upper, complete, narrowest, tested, off, bytearray(self._apart) if known else None))
+            nearest = nearest_of(self._apart) if known else (None, None, None, None)
+            return made(Distance, (lower, upper, complete, narrowest, tested, off, *nearest))
         finally:
             self._lock.release()
 

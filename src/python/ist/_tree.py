@@ -6,7 +6,7 @@ import numpy as np
 
 from ._arrays import address, count_of, number_of
 from ._c import BuildOptions, TreeInfo
-from ._errors import check, need_word
+from ._errors import check, need_word, refuse_type
 from ._follow import Follower
 from ._handle import Handle, Out
 from ._library import LIBRARY
@@ -156,7 +156,7 @@ class Tree(Handle):
 
 def need_tree(tree, what):
     if not isinstance(tree, Tree):
-        raise TypeError(f"{what} is a {type(tree).__name__}: pass an ist.Tree, from ist.build or ist.load")
+        refuse_type(f"{what} is a {type(tree).__name__}: pass an ist.Tree, from ist.build or ist.load")
 
 
 def build(

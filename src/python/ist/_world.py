@@ -9,6 +9,7 @@ from ._answers import Contacts, LeastDistance, WorldAnswer
 from ._arrays import address, budget_of, by_columns, count_of, number_of, place_of, pose_of
 from ._c import (
     CONTACT,
+    CONTACT_SUMS,
     LEAF_PAIR,
     TRIANGLE_PAIR,
     WORLD_PAIR,
@@ -32,10 +33,11 @@ QUESTIONS = {
     "near_pairs": (_c.IST_ASK_NEAR, None),
     "intersects": (_c.IST_ASK_INTERSECTS, None),
     "leaf_pairs": (_c.IST_ASK_LEAF_PAIRS, LEAF_PAIR),
-    "distances": (_c.IST_ASK_DISTANCE, None),
+    "distance": (_c.IST_ASK_DISTANCE, None),
     "contacts": (_c.IST_ASK_CONTACTS, None),
     "triangle_pairs": (_c.IST_ASK_TRIANGLE_PAIRS, TRIANGLE_PAIR),
 }
+QUESTIONS["distances"] = QUESTIONS["distance"]  # as the method is named
 
 
 class World(Lone):
@@ -183,8 +185,8 @@ class World(Lone):
         """Asks each pair of bodies that is near a question, and returns a WorldAnswer.
 
         question: "near_pairs" lists the pairs with the distance of their root bounds, and asks none. "intersects" tells by
-        `answer` whether they intersect: NO, NEAR or YES. "contacts" finds their contacts, for contacts_of(). "distances" bounds
-        their distance by an interval no wider than `tolerance`, and finds the nearest points. "leaf_pairs" finds all pairs of
+        `answer` whether they intersect: NO, NEAR or YES. "contacts" finds their contacts, for contacts_of(). "distance" bounds
+        their distance by an interval no wider than `tolerance`, and finds the nearest points; "distances" does the same. "leaf_pairs" finds all pairs of
         voxels whose bounds overlap, "triangle_pairs" all pairs of triangles with a common point: found_of(row) of the answer
         has those of one pair of bodies.
 
@@ -243,8 +245,8 @@ class World(Lone):
         return self.ask("contacts", out=out, tests=tests, seconds=seconds)
 
     def distances(self, tolerance=0.0, *, out=None, tests=0, seconds=0.0):
-        """ask("distances")"""
-        return self.ask("distances", tolerance=tolerance, out=out, tests=tests, seconds=seconds)
+        """ask("distance")"""
+        return self.ask("distance", tolerance=tolerance, out=out, tests=tests, seconds=seconds)
 
     def leaf_pairs(self, *, into=None, out=None, tests=0, seconds=0.0):
         """ask("leaf_pairs")"""
@@ -280,7 +282,7 @@ class World(Lone):
             int(row["found"]),
             sums.weight,
             int(row["sphere_tests"]),
-            bytearray(sums),
+            np.frombuffer(bytearray(sums), CONTACT_SUMS),
             float(row["rotation_error"]),
         )
 

@@ -39,6 +39,8 @@ const mostBytes = 1e9;
 const firstVoxel = 1 / 275;
 // Of the larger body's extent: a finer tree of it is too large for a page.
 const finestVoxel = 1 / 2000;
+// Faults of a build that another voxel size mends. Texts of the others have their remedy.
+const sizeFaults = new Set(['memory-limit', 'voxel-size-invalid', 'voxel-size-too-small']);
 // Bodies whose sizes differ by more are of different units: an inch has 25.4 mm.
 const farApart = 20;
 
@@ -121,22 +123,44 @@ export function makeBodiesLoader({store, say, ask}) {
       );
       return true;
     }
-    if (fixed.unit !== null && moving.unit !== null && fixed.unit !== moving.unit) {
+    const [unit, other] = [unitOfBody('fixed', fixed), unitOfBody('moving', moving)];
+    if (unit !== null && other !== null && unit !== other) {
       say(
-        `${fixed.name} is in ${unitNames[fixed.unit]}, and ${moving.name} in ${unitNames[moving.unit]}. Both must be in one unit; nothing is converted: ` +
+        `${fixed.name} is in ${unitNames[unit]}, and ${moving.name} in ${unitNames[other]}. Both must be in one unit; nothing is converted: ` +
           'convert one of them, and open it again.',
         'warning',
       );
       return true;
     }
     const [small, large] = fixed.extent < moving.extent ? [fixed, moving] : [moving, fixed];
-    if (large.extent <= farApart * small.extent) return false;
+    if (large.extent > farApart * small.extent) {
+      say(
+        `${large.name} is ${short(large.extent / small.extent, 2)} times as large as ${small.name}: one of them may be in metres or inches. ` +
+          'Both must be in one unit; nothing is converted.',
+        'warning',
+      );
+      return true;
+    }
+    const known = unit ?? other ?? 'mm';
+    // Whoever chose the unit for one file is about to open the other one again.
+    if (known === 'mm' || known === store.get().unit || (unit !== null && other !== null)) return false;
+    const [named, bare] = unit === null ? [moving, fixed] : [fixed, moving];
     say(
-      `${large.name} is ${short(large.extent / small.extent, 2)} times as large as ${small.name}: one of them may be in metres or inches. ` +
-        'Both must be in one unit; nothing is converted.',
+      `${named.name} is in ${unitNames[known]}, and no unit is known of ${bare.name}, so ${unitNames[known]} are assumed. If it is in another unit, ` +
+        'choose that as the unit of the files you open, and open it again.',
       'warning',
     );
     return true;
+  }
+
+  /**
+   * A built-in jaw names no unit, and is in millimetres.
+   * @param {Role} role
+   * @param {BodyFacts} body
+   * @returns {Unit | null}
+   */
+  function unitOfBody(role, {unit}) {
+    return unit ?? (kept.seed !== null && !kept.files[role] ? 'mm' : null);
   }
 
   /** @param {BodyFacts} body */
@@ -221,7 +245,8 @@ export function makeBodiesLoader({store, say, ask}) {
       // The trees of before still answer, and are what the panels show.
       if (text === null) throw error;
       const trees = store.get().trees === null ? 'There are no trees yet' : 'The trees of before are kept';
-      throw new Error(`${text.replace(/\.$/, '')}. ${trees}: choose another voxel size.`);
+      const remedy = sizeFaults.has(/** @type {{code?: string}} */ (error).code ?? '') ? ': choose another voxel size' : '';
+      throw new Error(`${text.replace(/\.$/, '')}. ${trees}${remedy}.`);
     }
   }
 

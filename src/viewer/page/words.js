@@ -1,6 +1,7 @@
 /** Numbers as words for people. What is saved has all digits; what is read has few. */
 
 /** @typedef {import('./protocol.js').Line} Line */
+/** @typedef {import('./protocol.js').Unit} Unit */
 
 const units = {mm: 'mm', m: 'm', inch: 'in', µm: 'µm', um: 'µm', cm: 'cm'};
 const millimetres = {mm: 1, m: 1000, inch: 25.4, µm: 1e-3, um: 1e-3, cm: 10};
@@ -118,9 +119,10 @@ export function differInFrame(a, b) {
 /**
  * What `ist info` says of a body, in sentences.
  * @param {Line} info
+ * @param {string} [assumed]  the unit that counts if the file names none
  * @returns {string[]}
  */
-export function infoSentences(info) {
+export function infoSentences(info, assumed = 'mm') {
   const sentences = [];
   if (info.kind === 'tree' && info.voxels === null) {
     sentences.push('A tree of triangles without voxels: the page builds its own tree.');
@@ -139,7 +141,7 @@ export function infoSentences(info) {
     const named = info.unit ? ` ${unitWord(info.unit)}` : '';
     sentences.push(
       `Extent ${info.extent.map((/** @type {number} */ side) => short(side)).join(' × ')}${named}` +
-        (info.unit ? '.' : '; the file names no unit, so millimetres are assumed.'),
+        (info.unit ? '.' : `; the file names no unit, so ${unitNames[/** @type {Unit} */ (assumed)]} are assumed.`),
     );
   }
   if (info.frame) sentences.push(`Frame ${info.frame.toUpperCase()}, as the file says.`);

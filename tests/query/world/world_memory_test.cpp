@@ -147,6 +147,12 @@ TEST_F(WorldMemory, BeyondTheLimitIsRefused) {
     for (const char* const part : {"3 near pairs", "max_memory", "reserve for fewer pairs"}) {
       EXPECT_NE(text.find(part), std::string::npos) << text;
     }
+    // Names that C and Python have too, and small limits in bytes.
+    EXPECT_NE(text.find("lower frontier_pairs, front_pairs or pair_caches"), std::string::npos);
+    EXPECT_EQ(text.find("0.0 MB"), std::string::npos) << text;
+    if (limit == 0) {
+      EXPECT_NE(text.find("max_memory, 0 bytes:"), std::string::npos) << text;
+    }
     // Nothing was made.
     EXPECT_EQ(small.bytes(), 0u);
     EXPECT_EQ(small.ask(kIntersects).status, QueryStatus::kNotPrepared);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "ist/base/files.h"
 #include "ist/mesh/format/other_formats.h"
 #include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/import/imported_mesh.h"
@@ -39,6 +40,12 @@ bool begins_like_off(std::string_view content, std::string_view file, std::strin
   return is_begin && (is_text(content) || reader.word() == "BINARY");
 }
 
+bool is_tree(std::string_view content) {
+  return std::equal(kTreeFileMagic.begin(), kTreeFileMagic.end(), content.begin(),
+                    content.begin() + std::min(content.size(), kTreeFileMagic.size()),
+                    [](unsigned char a, char b) { return a == static_cast<unsigned char>(b); });
+}
+
 // Whether the first line of more than one word, comments skipped, is one of an OBJ; every lone word
 // before it must be, too.
 bool begins_like_obj(std::string_view content, std::string_view file) {
@@ -59,6 +66,10 @@ TriangleMesh read_content(std::string_view content, const std::filesystem::path&
   const std::string extension = file.extension().string();
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
+  if (is_tree(content))
+    fail_mesh(ErrorCode::kNotAMesh, name, "",
+              "the file is a tree of IST; read it by read_tree, ist_tree_load or ist.load, or name "
+              "the mesh that it was built from");
   if (has_size_of_binary_stl(content)) return read_binary_stl(content, name);
   if (content.starts_with(kByteOrderMark)) content.remove_prefix(kByteOrderMark.size());
   TextReader reader(content, name);
@@ -78,7 +89,7 @@ TriangleMesh read_content(std::string_view content, const std::filesystem::path&
     fail_mesh(ErrorCode::kNotAMesh, name, "",
               fmt::format("the file's format is {}, and the supported formats are {}; export the "
                           "mesh as one of them",
-                          format->name, kMeshFormats));
+                          format->name, readable_formats()));
   if (begins_like_off(content, name, extension)) return read_off(content, name);
   if (is_text(content)) {
     if (same_word(first_word, "solid")) return read_text_stl(content, name);
@@ -99,7 +110,7 @@ TriangleMesh read_content(std::string_view content, const std::filesystem::path&
   fail_mesh(
       ErrorCode::kNotAMesh, name, "",
       fmt::format("the content is in no supported format: {}; convert the mesh to one of them",
-                  kMeshFormats));
+                  readable_formats()));
 }
 
 }  // namespace ist

@@ -16,7 +16,8 @@ inline constexpr std::size_t kStlFacetBytes = 50;
 
 struct VtkLabels;
 
-/// The formats that read_content() reads, for messages and helps. Headers and pages name the same.
+/// The formats that read_content() reads with ist-import, for messages and helps. Headers and pages
+/// name the same.
 inline constexpr std::string_view kMeshFormats =
     "STL, PLY, OBJ, OFF, VTK PolyData, glTF, 3MF, COLLADA, FBX, X3D, AMF, 3DS, AC3D or LightWave";
 

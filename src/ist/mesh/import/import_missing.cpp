@@ -14,4 +14,6 @@ TriangleMesh read_imported(std::string_view, const std::filesystem::path& file) 
                         kConvert));
 }
 
+std::string_view readable_formats() { return "STL, PLY, OBJ, OFF or VTK PolyData"; }
+
 }  // namespace ist

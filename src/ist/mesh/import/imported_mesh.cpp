@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "ist/base/printable.h"
+#include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/import/import_message.h"
 #include "ist/mesh/import/import_run.h"
@@ -83,5 +84,7 @@ TriangleMesh read_imported(std::string_view content, const std::filesystem::path
   if (!is_complete_import(run.answer)) fail_of(run, importer, name);
   return read_import_message(run.answer, importer, name);
 }
+
+std::string_view readable_formats() { return kMeshFormats; }
 
 }  // namespace ist

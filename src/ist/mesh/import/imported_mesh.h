@@ -22,4 +22,8 @@ namespace ist {
 [[nodiscard]] TriangleMesh read_imported(std::string_view content,
                                          const std::filesystem::path& file);
 
+/// Returns the formats that this platform reads, for messages: without processes there is no
+/// ist-import.
+[[nodiscard]] std::string_view readable_formats();
+
 }  // namespace ist

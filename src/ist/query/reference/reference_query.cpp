@@ -7,9 +7,11 @@
 #include <type_traits>
 #include <vector>
 
+#include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/query/query_rules.h"
 #include "ist/query/relative_pose.h"
+#include "ist/tree/mesh_source.h"
 #include "ist/tree/nested_bounds.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/tree_parts.h"
@@ -201,6 +203,8 @@ struct ReferenceState {
   ReferenceState(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                  SphereSource source)
       : fixed_{fixed, {}}, moving_{moving, {}}, policy_(policy) {
+    const std::string reason = contradiction(fixed, "the fixed tree", moving, "the moving tree");
+    if (!reason.empty()) throw Error(ErrorCode::kArgumentInvalid, "reference query: " + reason);
     fixed.require(policy, "fixed");
     moving.require(policy, "moving");
     const ScopedFloatEnvironment environment;

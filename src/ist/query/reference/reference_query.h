@@ -43,7 +43,8 @@ enum class SphereSource : std::uint8_t {
 /// E. Ruffaldi et al., The implicit sphere tree, World Haptics 2005, section II.E.
 class IST_API ReferenceQuery {
  public:
-  /// Throws kPolicyMissing. Cost: none with kOnTheFly; with kSaved 32 bytes a node.
+  /// Throws kPolicyMissing, and kArgumentInvalid if the trees have different units or different
+  /// frames. Cost: none with kOnTheFly; with kSaved 32 bytes a node.
   ReferenceQuery(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                  SphereSource source = SphereSource::kOnTheFly);
   ~ReferenceQuery();

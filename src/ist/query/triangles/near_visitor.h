@@ -26,7 +26,7 @@ class NearList {
   void add(const NearPair& pair) noexcept {
     const std::uint64_t at = count_++;
     if (at < out_.size()) {
-      out_[at] = pair;
+      out_[static_cast<std::size_t>(at)] = pair;
       if (count_ == out_.size()) std::make_heap(out_.begin(), out_.end(), before);
     } else if (!out_.empty() && before(pair, out_.front())) {
       std::pop_heap(out_.begin(), out_.end(), before);

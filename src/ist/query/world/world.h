@@ -104,7 +104,7 @@ struct WorldPair {
   /// The nearest triangles, as DistanceResult has them, with points in world coordinates. Empty
   /// after other questions than kDistance and World::distance.
   std::optional<NearPair> nearest = std::nullopt;
-  double narrowest = 0;            ///< kDistance: no tolerance below this width can be reached
+  double narrowest = 0;            ///< kDistance: DistanceResult::narrowest
   double resolution = 0;           ///< the surfaces in a leaf pair are no farther apart; 0: unknown
   double pad = 0;                  ///< kContacts, kLeafPairs: QueryResult::pad
   std::uint64_t found = 0;         ///< leaf pairs, or of kTrianglePairs pairs of triangles
@@ -184,8 +184,9 @@ class IST_API World {
   /// @param name names the body in errors; if empty, `body` and its number do
   ///
   /// Throws kPolicyMissing if the tree lacks the bounds of the options, kPoseInvalid,
-  /// kArgumentInvalid beyond kMostBodies and for a tree in another frame of a patient than an
-  /// earlier one, kMemoryLimit for a tree that is too large to be searched, std::bad_alloc.
+  /// kArgumentInvalid beyond kMostBodies and for a tree in another unit, or another frame of a
+  /// patient, than an earlier one, kMemoryLimit for a tree that is too large to be searched,
+  /// std::bad_alloc.
   ///
   /// Cost: 0.5 µs; for the first body of a tree 10 ns a triangle and 1 ns a node.
   BodyIndex add(const SphereTree& tree,

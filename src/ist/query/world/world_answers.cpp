@@ -81,13 +81,15 @@ void ask_query(const WorldQuestion& question, Query& query, ContactManifold* man
       pair.manifold = manifold;
       break;
     case WorldQuestion::kLeafPairs: {
-      const std::span<LeafPair> out = question.leaf_pairs.subspan(pair.first);
+      const std::span<LeafPair> out =
+          question.leaf_pairs.subspan(static_cast<std::size_t>(pair.first));
       take_leaf_pairs(query.leaf_pairs(pose, out, budget), pair);
       pair.written = std::min<std::uint64_t>(pair.found, out.size());
       break;
     }
     case WorldQuestion::kTrianglePairs: {
-      const std::span<TrianglePair> out = question.triangle_pairs.subspan(pair.first);
+      const std::span<TrianglePair> out =
+          question.triangle_pairs.subspan(static_cast<std::size_t>(pair.first));
       const TrianglePairsResult result = query.triangle_pairs(pose, out, budget);
       take(result, pair);
       pair.truncated = result.truncated;

@@ -12,8 +12,6 @@
 namespace ist::detail {
 namespace {
 
-constexpr double kMegabyte = 1e6;
-
 // Returns the number of pair caches for so many pairs.
 std::size_t slots_for(std::size_t room, const AskerRoom& sizes,
                       const WorldOptions& options) noexcept {
@@ -43,21 +41,21 @@ WorldState::Reserved::Reserved(std::size_t most, WorldState& world, const AskerR
   candidates.reserve(most);
   felt.reserve(most);
   if (sizes.any == nullptr) return;
-  const WorldOptions& options = world.options;
+  const WorldOptions& given = world.options;
   if (sizes.has_leaves()) {
     const SphereTree& tree = *sizes.query.voxels;
-    const SpherePolicy policy = QueryState::policy_of(tree, tree, options.query);
+    const SpherePolicy policy = QueryState::policy_of(tree, tree, given.query);
     manifolds.reserve(most);
     for (std::size_t k = 0; k < most; ++k) {
       manifolds.push_back(Access::made_of<ContactManifold>(
-          std::make_unique<ContactReducer>(tree, policy, options.manifold)));
+          std::make_unique<ContactReducer>(tree, policy, given.manifold)));
     }
   }
-  slots = CacheSlots(slots_for(most, sizes, options), sizes, options);
-  for (std::size_t k = 0; k < options.threads; ++k) {
-    askers.push_back(std::make_unique<PairAsker>(sizes, options));
+  slots = CacheSlots(slots_for(most, sizes, given), sizes, given);
+  for (std::size_t k = 0; k < given.threads; ++k) {
+    askers.push_back(std::make_unique<PairAsker>(sizes, given));
   }
-  pool = std::make_unique<ResidentPool>(options.threads - 1, &world,
+  pool = std::make_unique<ResidentPool>(given.threads - 1, &world,
                                         [](void* self, std::size_t thread, std::size_t k) noexcept {
                                           WorldState& asked = *static_cast<WorldState*>(self);
                                           asked.ask_pair(thread, k, asked.round.budget);
@@ -121,14 +119,14 @@ std::uint64_t WorldState::bytes_for(std::size_t room, const AskerRoom& sizes,
   }
   const std::uint64_t sum = of_pairs + of_threads + of_caches;
   if (sum <= limit) return sum;
-  const auto megabytes = [](std::uint64_t bytes) { return static_cast<double>(bytes) / kMegabyte; };
+  // C and Python have options of the same names.
   throw_error(ErrorCode::kMemoryLimit,
-              "world: {:.1f} MB for {}, {:.1f} MB for {} and {:.1f} MB for {} are more than "
-              "max_memory, {:.1f} MB: reserve for fewer pairs, lower query.frontier_pairs, "
-              "manifold.max_leaves or pair_caches, or raise max_memory",
-              megabytes(of_pairs), counted(room, "near pair"), megabytes(of_threads),
-              counted(options.threads, "thread"), megabytes(of_caches),
-              counted(slots_for(room, sizes, options), "pair cache"), megabytes(limit));
+              "world: {} for {}, {} for {} and {} for {} are more than max_memory, {}: reserve for "
+              "fewer pairs, lower frontier_pairs, front_pairs or pair_caches, keep fewer contacts, "
+              "or raise max_memory",
+              in_bytes(of_pairs), counted(room, "near pair"), in_bytes(of_threads),
+              counted(options.threads, "thread"), in_bytes(of_caches),
+              counted(slots_for(room, sizes, options), "pair cache"), in_bytes(limit));
 }
 
 void WorldState::reserve(std::size_t near_pairs) {

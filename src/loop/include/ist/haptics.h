@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// The haptic layer: devices, effects, the simulation, the servo loop and its records.
+/// The haptic layer: devices, effects, the simulation, the servo loop and its records. Link
+/// libist_loop (CMake ist::loop).
 #include "ist/base/api.h"
 
 #if __cplusplus >= 202002L  // else ist/base/api.h has said what is needed

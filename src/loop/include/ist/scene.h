@@ -2,6 +2,7 @@
 
 /// @file
 /// Scenes: bodies, a device and the effects between them, read from TOML or made by a program.
+/// Link libist_loop (CMake ist::loop).
 #include "ist/base/api.h"
 
 #if __cplusplus >= 202002L  // else ist/base/api.h has said what is needed

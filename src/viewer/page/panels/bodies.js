@@ -131,7 +131,7 @@ function bodyLines(state, role) {
   if (!body) return [element('p', {}, 'There is none yet.')];
   const lines = [
     element('p', {}, element('strong', {}, body.name)),
-    ...infoSentences({unit: body.unit, ...body.info}).map((sentence) => element('p', {}, sentence)),
+    ...infoSentences({unit: body.unit, ...body.info}, unitOf(state) ?? undefined).map((sentence) => element('p', {}, sentence)),
     ...body.warnings.map((warning) => element('p', {class: 'warned'}, `${warning.replace(/\.$/, '')}.`)),
   ];
   return state.trees ? [...lines, treeFacts(state.trees[role], unitWord(unitOf(state)))] : lines;

@@ -30,7 +30,8 @@
  * maps moving mesh coordinates to fixed mesh coordinates. A rotation within 1e-3 of orthonormal, by
  * the largest entry of |R^T R - I|, is projected to the nearest rotation; `rotation_error` in
  * results says how far it was. A pose that is farther off, is not finite, mirrors, or has a scale
- * that differs from 1 by more than 1e-5, gives IST_POSE_INVALID. Both meshes share a unit.
+ * that differs from 1 by more than 1e-5, gives IST_POSE_INVALID. Both meshes share a unit; trees
+ * that name different ones are refused.
  *
  * Real time. Functions marked [real time] allocate no memory, wait for nothing and make no system
  * call. Two exceptions: in a library loaded by dlopen() a thread's first error may allocate memory
@@ -121,7 +122,8 @@ enum {
 
 /** The directions of the patient that a mesh's axes point to. 3D Slicer writes SPACE=RAS or
  * SPACE=LPS into its files. A half turn about z leads from one frame to the other. A query refuses
- * two trees of different known frames with IST_ARGUMENT_INVALID. */
+ * two trees of different known frames with IST_ARGUMENT_INVALID, as a world and
+ * ist_tree_distance_map do. */
 enum {
   IST_FRAME_UNKNOWN = 0, /**< the file does not say */
   IST_FRAME_RAS = 1,     /**< +x right, +y front, +z up */
@@ -144,10 +146,10 @@ typedef struct ist_build_options {
 } ist_build_options;
 
 /** Builds a tree, and turns a closed mesh outward where it is inside out. The mesh may be freed
- * afterwards. The call uses all cores. Errors: IST_VOXEL_SIZE_INVALID, IST_VOXEL_SIZE_TOO_SMALL,
- * IST_ARGUMENT_INVALID for drop_triangles or proximity without voxels, IST_MESH_EXTENT,
- * IST_MEMORY_LIMIT, IST_CANCELLED. Cost: 2.5 s for 1.7 million voxels on two cores, 0.2 s for the
- * same 107,000 triangles without voxels. */
+ * afterwards. `options` may be NULL. The call uses all cores. Errors: IST_VOXEL_SIZE_INVALID,
+ * IST_VOXEL_SIZE_TOO_SMALL, IST_ARGUMENT_INVALID for drop_triangles or proximity without voxels,
+ * IST_MESH_EXTENT, IST_MEMORY_LIMIT, IST_CANCELLED. Cost: 2.5 s for 1.7 million voxels on two
+ * cores, 0.2 s for the same 107,000 triangles without voxels. */
 IST_C_API ist_status ist_tree_build(const ist_mesh* mesh, const ist_build_options* options,
                                     ist_tree** tree) IST_NOEXCEPT;
 
@@ -235,14 +237,15 @@ typedef struct ist_query_options {
                               default 0: where surfaces meet, to within 0.25 with slabs */
   uint64_t front_pairs;    /**< most leaf pairs kept in slow motion, 224 bytes each, to 2^26;
                               0: none */
-  uint64_t near_pairs;     /**< most near pairs of triangles kept in slow motion, 400 bytes each, to
+  uint64_t near_pairs;     /**< most near pairs of triangles kept in slow motion, 336 bytes each, to
                               2^26; 0: none. 2,048 is a good number */
 } ist_query_options;
 
 /** Creates a query and reserves all its memory. `options` may be NULL. Both trees may be the same,
  * and may be freed afterwards. Errors: IST_POLICY_MISSING, also for spheres of a tree without
  * voxels; IST_VOXELS_MISSING if one tree lacks voxels and the other no triangles;
- * IST_TARGET_MISSING, IST_MEMORY_LIMIT, IST_OUT_OF_MEMORY, IST_ARGUMENT_INVALID. Cost: a few ms. */
+ * IST_TARGET_MISSING, IST_MEMORY_LIMIT, IST_OUT_OF_MEMORY, IST_ARGUMENT_INVALID, also for trees of
+ * different units or different frames. Cost: a few ms. */
 IST_C_API ist_status ist_query_create(const ist_tree* fixed, const ist_tree* moving,
                                       const ist_query_options* options,
                                       ist_query** query) IST_NOEXCEPT;
@@ -358,7 +361,8 @@ typedef struct ist_distance_result {
   uint64_t sphere_tests;   /**< tests made, as ist_budget counts them */
   int32_t complete;        /**< 1: the interval is no wider than the tolerance */
   int32_t nearest_known;   /**< 1: the members below hold the nearest triangles that were found */
-  double narrowest;        /**< no tolerance below this width can be reached at this pose */
+  double narrowest;        /**< the width that rounding allows at this pose, or voxels if a tree has
+                              no triangles: a smaller tolerance may be missed */
   double rotation_error;   /**< of the given pose: the largest entry of |R^T R - I| */
   double nearest_fixed[3], /**< the fixed triangle's closest point, fixed mesh coordinates */
       nearest_moving[3];   /**< the moving triangle's; a common point if they intersect */

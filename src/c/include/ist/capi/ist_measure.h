@@ -38,7 +38,8 @@ IST_C_API ist_status ist_tree_signed_distance(const ist_tree* tree, const double
 
 /** Measures the distances of the vertices of `body` from the surface of `other`. `pose` maps
  * coordinates of `body` to those of `other`. Writes the first `capacity`; `vertices` takes the
- * number of all. Errors: IST_POSE_INVALID too. */
+ * number of all. Errors: IST_POSE_INVALID too, and IST_ARGUMENT_INVALID if the trees have different
+ * units or different frames. */
 IST_C_API ist_status ist_tree_distance_map(const ist_tree* body, const ist_tree* other,
                                            const double pose[16], double reach,
                                            const ist_progress* progress,
@@ -138,8 +139,8 @@ typedef struct ist_first_contact {
 
 /** Finds the first contact along a motion, and its place. From `lower` to `upper` no point of the
  * moving body goes farther than `tolerance`, mesh units. Of `budget` the tests are distances. The
- * query forgets what earlier poses left. Errors: IST_POSE_INVALID, IST_ARGUMENT_INVALID,
- * IST_CANCELLED. Cost: some 10 to 40 distances for jaws that close. */
+ * query forgets what earlier poses left. Errors: IST_TRIANGLES_MISSING, IST_POSE_INVALID,
+ * IST_ARGUMENT_INVALID, IST_CANCELLED. Cost: some 10 to 40 distances for jaws that close. */
 IST_C_API ist_status ist_query_first_contact(ist_query* query, const ist_motion* motion,
                                              double tolerance, const ist_budget* budget,
                                              const ist_progress* progress,

@@ -4,7 +4,7 @@
 /**
  * @file
  * Force feedback in a device's own loop: each tick passes the handle's pose and receives the force
- * and torque for the hand. The conventions of ist_c.h apply.
+ * and torque for the hand. The conventions of ist_c.h apply. Link libist_loop.
  *
  * The caller chooses metres or millimetres for poses. Forces are in N and torques in N m about the
  * tool's origin, both along the scene's axes. The tool's frame has the axes of the first held mesh;

@@ -6,7 +6,7 @@
  * Sweeps: the same questions about two bodies at up to 10^12 poses, in parts that any process, on
  * any machine, may make. A sweep file names the bodies, the poses and the questions; a folder
  * holds the parts, which merge into one table. The conventions of ist_c.h apply. Every function may
- * be called from any number of threads on one sweep.
+ * be called from any number of threads on one sweep. Link libist_loop.
  */
 
 #include "ist/capi/ist_c.h"

@@ -47,7 +47,7 @@ IST_C_API ist_status ist_world_create(const ist_world_options* options,
  * NULL: the body is then at its mesh's place, and messages name it by its number. The tree may be
  * freed afterwards. Questions then give IST_NOT_PREPARED until the next ist_world_reserve. Errors:
  * IST_POLICY_MISSING, IST_POSE_INVALID, IST_MEMORY_LIMIT; IST_ARGUMENT_INVALID beyond
- * IST_MOST_BODIES. */
+ * IST_MOST_BODIES, and for a tree of another unit or frame than an earlier one. */
 IST_C_API ist_status ist_world_add(ist_world* world, const ist_tree* tree, const double pose[16],
                                    const char* name, uint32_t* body) IST_NOEXCEPT;
 
@@ -118,7 +118,7 @@ typedef struct ist_world_pair {
   uint64_t written;      /**< valid elements there */
   uint64_t contacts;     /**< IST_ASK_CONTACTS: for ist_world_get_contacts */
   double resolution;     /**< greatest distance between the surfaces in a leaf pair; 0 unknown */
-  double narrowest;      /**< IST_ASK_DISTANCE: no tolerance below this width can be reached */
+  double narrowest;      /**< IST_ASK_DISTANCE: as in ist_distance_result */
   uint64_t sphere_tests; /**< tests made, as ist_budget counts them */
   double rotation_error; /**< of the given poses, the larger one: as in ist_query_result */
   int32_t nearest_known; /**< IST_ASK_DISTANCE: 1: the members below hold the nearest triangles that

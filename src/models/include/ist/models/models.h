@@ -1,5 +1,7 @@
 #pragma once
 
+/// @file
+/// Built-in jaws and shapes. Link libist_loop (CMake ist::loop).
 #include <Eigen/Core>
 #include <cstdint>
 
