@@ -1,6 +1,6 @@
-// Presses walls with couplings of many stiffnesses, and finds from which on the wall is active,
-// beside what largest_stiffness() computes. Prints JSON lines, which scripts/stability_border.py
-// keeps and draws. Not timed: the same lines on every machine.
+// Presses walls with couplings of many stiffnesses, and finds the least stiffness at which the wall
+// is active, beside the one that largest_stiffness() computes. Prints JSON lines. The script
+// scripts/stability_border.py keeps and draws them. Not timed: the same lines on every machine.
 #include "loop/haptics/stability_border.h"
 
 #include <fmt/format.h>
@@ -12,26 +12,26 @@
 namespace ist::bench {
 namespace {
 
+using test::PressedWall;
 using test::PressResult;
 using test::PressSettings;
-using test::Wall;
 
 constexpr double kRates[] = {500, 1000, 4000};
 constexpr double kDelays[] = {0, 1e-3};
-constexpr double kDampings[] = {0.5, 1, 1.5,
-                                2,   3, 4};  // N s/m, and a thousandth of it where it turns
+constexpr double kDampings[] = {0.5, 1, 1.5, 2, 3, 4};  // N s/m, and a thousandth of it if it turns
 constexpr double kParts[] = {0.3, 0.5, 0.65, 0.8, 0.9, 1, 1.1, 1.25, 1.5, 2, 2.5};  // of the border
 
-void print(const char* wall, const PressSettings& settings, double computed,
+void print(const char* wall, const char* stop, const PressSettings& settings, double computed,
            const std::string& found) {
-  fmt::print(R"({{"wall": "{}", "rate": {}, "delay": {}, "damping": {}, "resolution": {}, )"
-             R"("computed": {}, {}}})"
+  fmt::print(R"({{"wall": "{}", "stop": "{}", "rate": {}, "delay": {}, "damping": {}, )"
+             R"("resolution": {}, "computed": {}, {}}})"
              "\n",
-             wall, settings.rate, settings.delay, settings.damping, settings.resolution, computed,
-             found);
+             wall, stop, settings.rate, settings.delay, settings.damping, settings.resolution,
+             computed, found);
 }
 
-void sweep(const char* name, const Wall& wall) {
+void sweep(const char* name, const PressedWall& wall) {
+  const char* stop = wall.springs ? "springs" : "constraint";
   for (const double rate : kRates) {
     for (const double delay : kDelays) {
       for (const double damping : kDampings) {
@@ -43,11 +43,12 @@ void sweep(const char* name, const Wall& wall) {
         for (const double part : kParts) {
           settings.stiffness = part * computed;
           const PressResult result = press(wall, settings);
-          print(name, settings, computed,
-                fmt::format(R"("stiffness": {}, "returned": {}, "allowance": {}, "growth": {})",
-                            settings.stiffness, result.returned, result.allowance, result.growth));
+          print(
+              name, stop, settings, computed,
+              fmt::format(R"("stiffness": {}, "returned": {}, "allowance": {}, "growth": {})",
+                          settings.stiffness, result.returned, result.allowance, result.growth()));
         }
-        print(name, settings, computed,
+        print(name, stop, settings, computed,
               fmt::format(R"("measured": {})", measured_border(wall, settings, computed)));
       }
       std::fflush(stdout);
@@ -59,6 +60,9 @@ void sweep(const char* name, const Wall& wall) {
 }  // namespace ist::bench
 
 int main() {
-  ist::bench::sweep("push", ist::test::slab_wall());
-  ist::bench::sweep("turn", ist::test::stop_wall());
+  using ist::test::Stop;
+  for (const Stop stop : {Stop::kConstraint, Stop::kSprings}) {
+    ist::bench::sweep("push", ist::test::slab_wall(stop));
+    ist::bench::sweep("turn", ist::test::stop_wall(stop));
+  }
 }

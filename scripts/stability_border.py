@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Makes perf/HAPTIC_STABILITY.md and its plot: presses walls with stiffer and stiffer couplings, and shows the energy that comes back
-and the stiffness at which that begins, beside the border that the loop computes. It times nothing. Some two minutes on one core, once built.
+"""Makes perf/HAPTIC_STABILITY.md and its plots: presses walls with stiffer and stiffer couplings, and shows the energy that comes back
+and the stiffness at which that begins, beside the border that the loop computes. Walls are a constraint or springs. It times nothing.
+Some three minutes on one core, once built.
 
     scripts/stability_border.py"""
 import collections
@@ -20,7 +21,7 @@ UNITS = {"push": ("N/m", "N s/m"), "turn": ("N m/rad", "N m s/rad")}
 
 
 def panel(axes, key, presses, borders, norm):
-    wall, delay, rate = key
+    _, wall, delay, rate = key
     stiffness, damping = UNITS[wall]
     drawn = axes.scatter([p["damping"] for p in presses], [p["stiffness"] for p in presses], s=26, cmap="RdBu_r", norm=norm,
                          c=[1e6 * p["returned"] for p in presses], edgecolors="0.5", linewidths=0.3)
@@ -37,13 +38,13 @@ def panel(axes, key, presses, borders, norm):
 
 
 def plot(groups, file):
-    rates = sorted({key[2] for key in groups})
-    rows = list(dict.fromkeys(key[:2] for key in groups))
+    rates = sorted({key[-1] for key in groups})
+    rows = list(dict.fromkeys(key[:-1] for key in groups))
     plt = pyplot()
     figure, axes = plt.subplots(len(rows), len(rates), figsize=(10, 2.6 * len(rows)), squeeze=False, layout="constrained")
     norm = plt.matplotlib.colors.SymLogNorm(linthresh=10, vmin=-1e4, vmax=1e4)
     for key, (presses, borders) in groups.items():
-        drawn = panel(axes[rows.index(key[:2])][rates.index(key[2])], key, presses, borders, norm)
+        drawn = panel(axes[rows.index(key[:-1])][rates.index(key[-1])], key, presses, borders, norm)
     axes[0][0].legend(fontsize=6, loc="lower right")
     figure.colorbar(drawn, ax=axes, shrink=0.5, label="energy returned by a press, µJ: above 0 the wall is active")
     figure.savefig(file, metadata={"Date": None})
@@ -52,18 +53,18 @@ def plot(groups, file):
 def table(groups):
     """Returns the lines of the table, the number of presses within the part used, and how many of these exceed their allowance."""
     rows, used, broken = [], 0, 0
-    for (wall, delay, rate), (presses, borders) in groups.items():
+    for (stop, wall, delay, rate), (presses, borders) in groups.items():
         inside = [p for p in presses if p["stiffness"] <= (USED + 1e-9) * p["computed"]]
         used += len(inside)
         broken += sum(p["returned"] > p["allowance"] for p in inside)
         worst = max(inside, key=lambda p: p["returned"] - p["allowance"])
-        growing = min(p["stiffness"] / p["computed"] for p in presses if p["growth"] > 1)
+        growing = min((p["stiffness"] / p["computed"] for p in presses if p["growth"] > 1), default=None)
         ratios = [b["measured"] / b["computed"] for b in borders]
         most = "none found" if max(ratios) >= 0.99 * HIGHEST else f"{max(ratios):.2f}"
-        rows.append([wall, f"{rate:g}", f"{1e3 * delay:g}", str(len(presses)),
-                     f"{1e6 * worst['returned']:.1f} / {1e6 * worst['allowance']:.1f}", f"{growing:.2f}", f"{min(ratios):.2f} to {most}"])
-    return markdown(["wall", "rate, Hz", "delay, ms", "presses", "within 80 %: worst returned / allowance, µJ", "grows from",
-                     "measured / computed"], rows, right=range(1, 7)), used, broken
+        rows.append([stop, wall, f"{rate:g}", f"{1e3 * delay:g}", str(len(presses)),
+                     f"{1e6 * worst['returned']:.1f} / {1e6 * worst['allowance']:.1f}", f"{growing:.2f}" if growing else "nowhere", f"{min(ratios):.2f} to {most}"])
+    return markdown(["stop", "wall", "rate, Hz", "delay, ms", "presses", "within 80 %: worst returned / allowance, µJ", "grows from",
+                     "measured / computed"], rows, right=range(2, 8)), used, broken
 
 
 def main():
@@ -73,10 +74,11 @@ def main():
     on.results.mkdir(parents=True, exist_ok=True)
     lines = subprocess.run(["build/bench/bench/stability_border"], check=True, stdout=subprocess.PIPE, text=True).stdout
     (on.results / "stability_border.jsonl").write_text(lines)
-    groups = collections.defaultdict(lambda: ([], []))  # presses and borders by wall, delay and rate, in the order of the sweep
+    groups = collections.defaultdict(lambda: ([], []))  # presses and borders by stop, wall, delay and rate, in the order of the sweep
     for line in map(json.loads, lines.splitlines()):
-        groups[line["wall"], line["delay"], line["rate"]]["measured" in line].append(line)
-    plot(groups, PAGE.parent / "pictures/stability_border.svg")
+        groups[line["stop"], line["wall"], line["delay"], line["rate"]]["measured" in line].append(line)
+    for stop in {key[0] for key in groups}:
+        plot({key: group for key, group in groups.items() if key[0] == stop}, PAGE.parent / f"pictures/stability_border_{stop}.svg")
     rows, used, broken = table(groups)
     text = (f"{on.model}; {on.compiler}; commit {on.commit}. {sum(len(p) for p, _ in groups.values())} presses; of the {used} within "
             f"{100 * USED:.0f} % of the border, the part that the loop uses, {broken} returned more than their allowance.")
