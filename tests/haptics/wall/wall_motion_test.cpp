@@ -161,6 +161,18 @@ TEST(WallMotion, ScriptTurnsIntoTool_WipesItAside) {
   EXPECT_EQ(wall.held(), 0);
 }
 
+// A slope of 10 degrees comes down on a ball on a plate. The ball must go aside by 5.7 times its
+// way.
+TEST(WallMotion, ScriptSqueezesTool_KeepsTheTrust) {
+  const TriangleMesh slope = turned(box({-30, -20, 0}, {30, 20, 2}), turn_about({0, 1, 0}, 10));
+  const Plan down = moves_straight({0, 0, 9}, {0, 0, 6.5}, 0.1);
+  WallCase wall({{wall_plate()}, {slope, down}}, wall_ball(), at_mm(0, 0, 4.01));
+  wall.hold(at_mm(0, 0, 4.01), 1000);
+  EXPECT_NEAR(1e3 * wall.fixed_pose(1).translation.z(), 6.5, 1e-9) << "it has come to its end";
+  EXPECT_LT(wall.tool().x(), -5);
+  EXPECT_EQ(wall.held(), 0);
+}
+
 // The tool can make no way between a plate that rests and one that rises. The script waits.
 TEST(WallMotion, ToolPinnedByScript_ScriptWaits) {
   const TriangleMesh above = box({-20, -20, 4.5}, {20, 20, 6});
