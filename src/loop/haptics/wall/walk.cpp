@@ -23,8 +23,8 @@ constexpr int kCareful = 8;
 // The least part of the trust in use.
 constexpr double kLeastPart = 1.0 / 16;
 
-// Returns the largest part of `step`, at most 1, after which `way` less it is no longer than
-// `most`; 0 if no part is.
+// Returns the largest part of `step`, at most 1, with |way - part * step| <= most. Returns 0 if
+// there is none.
 double part_within(const Eigen::Vector3d& way, const Eigen::Vector3d& step, double most) noexcept {
   const double a = square_in_order(step), b = dot_in_order(way, step);
   const double spare = std::max(0.0, most * most - square_in_order(way));
@@ -36,7 +36,7 @@ double part_within(const Eigen::Vector3d& way, const Eigen::Vector3d& step, doub
 
 class Walk::Step {
  public:
-  // `left`: the rest of the scripts' time in this tick, s.
+  // `left` is the rest of the scripts' time in this tick, s.
   Step(const Parts& parts, Placement& tool, double& time, double left) noexcept
       : parts_(parts), tool_(tool), time_(time), part_(left) {
     look_ahead();
@@ -83,9 +83,8 @@ class Walk::Step {
     return meets;
   }
 
-  // Returns the part of a motion, no more than `part`, that is no longer than the trust. Fixed
-  // bodies that move push the tool by the least motion that obeys the bounds, and the rest of the
-  // motion is cut.
+  // Returns the part of a motion that the trust allows, at most `part`. Fixed bodies that move push
+  // the tool by the least motion that obeys the bounds. The part counts beyond this push.
   double fraction_of(const Vector6& motion, double part) noexcept {
     const double way = parts_.tool.way(motion), most = parts_.wall.trust() - drift_;
     push_.setZero();
@@ -171,9 +170,9 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
       return body.motion(input, effects, coupling, stretch, bounds, wall.tolerance());
     };
 
-    // The part of a motion by which the coupling's stretch changes no more than by the device's way
-    // and by so many steps of the trust. A tool that leaves a contact returns to the hand at that
-    // rate.
+    // Returns the part of a motion that keeps the rate of the coupling's stretch. The stretch
+    // changes by the device's way and so many steps of the trust at most. A tool that leaves a
+    // contact returns to the hand at this rate.
     const auto part_at_rate = [&](const Vector6& wanted, int steps) {
       const double way = steps * wall.settings().trust;
       const double turn = way / std::max(body.radius(), way);
