@@ -14,21 +14,21 @@
 namespace ist::test {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
-constexpr double kForce = 10, kTorque = 0.4;  // N, N m
+constexpr double kRunUnit = 1e-3;
+constexpr double kRunForce = 10, kRunTorque = 0.4;  // N, N m
 
 // How a hand moves from tick to tick.
 enum class Hand { kWanders, kJumps, kPushes };
 
-struct WallBodies {
+struct RunBodies {
   const char* name;
   const char *fixed, *held;  // files of the data folder; null: the built-in jaws
   double open;               // along z, mm: the bodies are apart there
 };
 
-Scene scene_of(const WallBodies& run) {
+Scene scene_of(const RunBodies& run) {
   Scene scene;
-  scene.unit = kMillimetre;
+  scene.unit = kRunUnit;
   const bool built_in = run.fixed == nullptr;
   if (built_in) {
     scene.fixed.front().source = BuiltInShape{.kind = BuiltInShape::Kind::kUpperJaw};
@@ -39,16 +39,16 @@ Scene scene_of(const WallBodies& run) {
   }
   scene.held.front().translation = {0, 0, run.open};
   scene.device = NullSettings{{.damping = 4, .angular_damping = 4e-3}};
-  scene.coupling.max_force = kForce;
-  scene.coupling.max_torque = kTorque;
-  scene.safety = {kForce, kTorque, 1e9, 1e9, 0};
+  scene.coupling.max_force = kRunForce;
+  scene.coupling.max_torque = kRunTorque;
+  scene.safety = {kRunForce, kRunTorque, 1e9, 1e9, 0};
   scene.contact = ContactSettings{};
   return scene;
 }
 
 class WallRun {
  public:
-  explicit WallRun(const WallBodies& run)
+  explicit WallRun(const RunBodies& run)
       : built_(build_scene(scene_of(run))),
         judge_(*built_.trees[0].contact, *built_.trees[1].contact),
         home_(built_.simulation->tool_pose()),
@@ -82,14 +82,14 @@ class WallRun {
           break;
       }
       Vector6 motion;
-      motion << kMillimetre * at, turn;
+      motion << kRunUnit * at, turn;
       device = home_.moved(motion);
       const Tick tick = built_.simulation->tick(device);
       ASSERT_FALSE(tick.fault);
       ASSERT_EQ(judge_.intersects(pose()).answer, Answer::kNo) << "tick " << i;
-      ASSERT_LE(tick.wrench.head<3>().norm(), kForce * (1 + 1e-12));
-      held_ += tick.held || tick.halved ? 1 : 0;
-      pressed_ += tick.points.empty() ? 0 : 1;
+      ASSERT_LE(tick.wrench.head<3>().norm(), kRunForce * (1 + 1e-12));
+      held_ += tick.held || tick.halved ? 1U : 0U;
+      pressed_ += tick.points.empty() ? 0U : 1U;
       way_ += (tick.tool.translation - before.translation).norm();
       before = tick.tool;
       ++ticks_;
@@ -108,7 +108,7 @@ class WallRun {
   [[nodiscard]] Eigen::Isometry3d pose() const {
     const Eigen::Isometry3d fixed = built_.simulation->body_pose(0).isometry();
     Eigen::Isometry3d pose = fixed.inverse() * built_.simulation->body_pose(1).isometry();
-    pose.translation() /= kMillimetre;
+    pose.translation() /= kRunUnit;
     return pose;
   }
 
@@ -120,10 +120,10 @@ class WallRun {
   double way_ = 0;
 };
 
-class WallRuns : public testing::TestWithParam<WallBodies> {};
+class WallRuns : public testing::TestWithParam<RunBodies> {};
 
 TEST_P(WallRuns, NeverIntersect) {
-  const WallBodies& run = GetParam();
+  const RunBodies& run = GetParam();
   if (run.fixed != nullptr && !std::filesystem::exists(data_dir() / run.fixed)) {
     IST_SKIP(run.fixed << " is not in " << data_dir());
   }
@@ -138,11 +138,11 @@ TEST_P(WallRuns, NeverIntersect) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Bodies, WallRuns,
-                         testing::Values(WallBodies{"Jaws", nullptr, nullptr, -5},
-                                         WallBodies{"HumanPair", "human_maxilla.stl",
-                                                    "human_mandible.stl", -4},
-                                         WallBodies{"CraniumAndMandible", "spl_cranium_face.stl",
-                                                    "spl_mandible.stl", -7}),
+                         testing::Values(RunBodies{"Jaws", nullptr, nullptr, -5},
+                                         RunBodies{"HumanPair", "human_maxilla.stl",
+                                                   "human_mandible.stl", -4},
+                                         RunBodies{"CraniumAndMandible", "spl_cranium_face.stl",
+                                                   "spl_mandible.stl", -7}),
                          [](const auto& of) { return std::string(of.param.name); });
 
 }  // namespace
