@@ -45,7 +45,6 @@ T* some();
 // Sets the members of a struct that a function requires.
 template <class T>
 void complete(T&) {}
-void complete(ist_build_options& options) { options.voxel_size = 0.5; }
 void complete(ist_servo_options& options) { options.unit = IST_UNIT_MM; }
 void complete(ist_rows_options& options) { options.questions = IST_ASK_INTERSECTS; }
 void complete(ist_motion& motion) { motion.from = motion.to = some<double>(); }

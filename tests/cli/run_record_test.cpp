@@ -270,7 +270,9 @@ TEST_F(RunRecord, ReplayOfARunThatWasStoppedGivesTheSameBytes) {
       if (line.contains("held")) held.emplace(line["held"].get<bool>(), line["steps"].get<int>());
     }
     EXPECT_TRUE(held.contains({true, 0})) << "no tick was held";
-    if (contact) EXPECT_TRUE(held.contains({true, 1})) << "none after its first step";
+    if (contact) {
+      EXPECT_TRUE(held.contains({true, 1})) << "none after its first step";
+    }
     EXPECT_FALSE(held.begin()->first) << "every tick was";
     EXPECT_TRUE(without_times(file_content(again)) == without_times(recorded));
   }

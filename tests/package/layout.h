@@ -27,12 +27,12 @@ consteval auto numbers_of(auto... places) {
                ist::World, ist::WorldOptions, ist::WorldQuestion, ist::WorldPair, ist::WorldAnswer,
                ist::WorldDistance, ist::Budget, ist::Placement, ist::Vector6, ist::Response,
                ist::ToolContacts, ist::Simulation, ist::Tick, ist::TickRecord, ist::HandSettings,
-               ist::ContactSettings, ist::SpringsSettings, ist::GravitySettings, ist::SnapSettings, ist::ServoCallback,
-               ist::LatencyHistogram, ist::ServoOptions, ist::ServoOutputs, ist::ServoReport,
-               ist::Snapshot<ist::TickRecord>, ist::TickRing<ist::TickRecord>, ist::Scene,
-               ist::BuiltScene, ist::SurfaceDistance, ist::Penetration, ist::PenetrationOptions,
-               ist::Motion, ist::FirstContact, ist::FirstContactOptions, ist::ContactRegion,
-               ist::SurfaceOcclusion, ist::Occlusion, ist::OcclusionOptions>(
+               ist::ContactSettings, ist::SpringsSettings, ist::GravitySettings, ist::SnapSettings,
+               ist::ServoCallback, ist::LatencyHistogram, ist::ServoOptions, ist::ServoOutputs,
+               ist::ServoReport, ist::Snapshot<ist::TickRecord>, ist::TickRing<ist::TickRecord>,
+               ist::Scene, ist::BuiltScene, ist::SurfaceDistance, ist::Penetration,
+               ist::PenetrationOptions, ist::Motion, ist::FirstContact, ist::FirstContactOptions,
+               ist::ContactRegion, ist::SurfaceOcclusion, ist::Occlusion, ist::OcclusionOptions>(
         offsetof(ist::TriangleMesh, triangles), offsetof(ist::Contact, weight),
         offsetof(ist::ContactSums, spring), offsetof(ist::QueryResult, pad),
         offsetof(ist::Placement, translation), offsetof(ist::Response, stiffness),
