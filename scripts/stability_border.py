@@ -62,7 +62,8 @@ def table(groups):
         ratios = [b["measured"] / b["computed"] for b in borders]
         most = "none found" if max(ratios) >= 0.99 * HIGHEST else f"{max(ratios):.2f}"
         rows.append([stop, wall, f"{rate:g}", f"{1e3 * delay:g}", str(len(presses)),
-                     f"{1e6 * worst['returned']:.1f} / {1e6 * worst['allowance']:.1f}", f"{growing:.2f}" if growing else "nowhere", f"{min(ratios):.2f} to {most}"])
+                     f"{1e6 * worst['returned']:.1f} / {1e6 * worst['allowance']:.1f}",
+                     f"{growing:.2f}" if growing else "nowhere", f"{min(ratios):.2f} to {most}"])
     return markdown(["stop", "wall", "rate, Hz", "delay, ms", "presses", "within 80 %: worst returned / allowance, µJ", "grows from",
                      "measured / computed"], rows, right=range(2, 8)), used, broken
 

@@ -152,7 +152,8 @@ struct Done {
   int held = 0, planned = 0, called = 0, refused = 0;
 
   [[nodiscard]] bool all() const noexcept {
-    return force > 0.5 && leaf_pairs > 0.2 && held > 5 && planned == 2 && called == 2 && refused == 2;
+    return force > 0.5 && leaf_pairs > 0.2 && held > 5 && planned == 2 && called == 2 &&
+           refused == 2;
   }
 };
 

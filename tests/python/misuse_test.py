@@ -49,7 +49,6 @@ class Names(Misuse):
         self.begins("World.add", ist.World().add, self.tree, EYE[:2])
         self.begins("ist.Sweep", ist.Sweep, "/none.toml", "/tmp")
 
-
     def test_wrong_types(self):
         for name, call in (("ist.Query", lambda: ist.Query(1, self.tree)), ("ist.build", lambda: ist.build((VERTICES, FACES), progress=1))):
             self.assertTrue(str(self.refuses(TypeError, "", call)).startswith(name + ": "))

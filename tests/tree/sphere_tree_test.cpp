@@ -224,7 +224,7 @@ TEST(SphereTree, SpheresThatItLacksAreNamedWithTheRemedy) {
       ASSERT_EQ(error.has_value(), policy > last) << to_string(policy);
       if (!error) continue;
       EXPECT_EQ(error->code(), ErrorCode::kPolicyMissing);
-      const std::string remedy = "--spheres " + std::string(to_string(policy));
+      const std::string remedy = "with spheres " + std::string(to_string(policy));
       EXPECT_NE(std::string(error->what()).find("upper"), std::string::npos);
       EXPECT_NE(std::string(error->what()).find(remedy), std::string::npos);
     }

@@ -324,7 +324,8 @@ class Query(Lone):
                 raise error_of(status)
             leaf_pairs, count, written, tested, complete, off = read_contacts(self._found)
             sums = self._sums
-            return made(Contacts, (out[:written], count, complete, leaf_pairs, sums.weight, tested, np.frombuffer(bytearray(sums), CONTACT_SUMS), off))
+            return made(Contacts, (out[:written], count, complete, leaf_pairs, sums.weight, tested,
+                                   np.frombuffer(bytearray(sums), CONTACT_SUMS), off))
         finally:
             self._lock.release()
 

@@ -186,9 +186,9 @@ class World(Lone):
 
         question: "near_pairs" lists the pairs with the distance of their root bounds, and asks none. "intersects" tells by
         `answer` whether they intersect: NO, NEAR or YES. "contacts" finds their contacts, for contacts_of(). "distance" bounds
-        their distance by an interval no wider than `tolerance`, and finds the nearest points; "distances" does the same. "leaf_pairs" finds all pairs of
-        voxels whose bounds overlap, "triangle_pairs" all pairs of triangles with a common point: found_of(row) of the answer
-        has those of one pair of bodies.
+        their distance by an interval no wider than `tolerance`, and finds the nearest points; "distances" does the same.
+        "leaf_pairs" finds all pairs of voxels whose bounds overlap, "triangle_pairs" all pairs of triangles with a common
+        point: found_of(row) of the answer has those of one pair of bodies.
 
         into: an array of LEAF_PAIR or TRIANGLE_PAIR that is filled by one pair of bodies after the other; by default one of
         65,536. out: an array of WORLD_PAIR that is filled by the rows; by default one with room for all.

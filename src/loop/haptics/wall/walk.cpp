@@ -226,6 +226,10 @@ Walk::End Walk::run(Placement& tool, double& time, const Goal& goal,
         end.finite = false;
         return end;
       }
+      if (!bounds.is_feasible() && step.drift() > 0) {  // the tool cannot yield
+        hold();
+        return end;
+      }
       wall.note_contacts(bodies);
       double fraction =
           step.fraction_of(*bounded, near_ ? 1 : part_at_rate(*bounded, end.steps + 1));
