@@ -18,8 +18,6 @@ bool is_rotation(const Eigen::Matrix3d& matrix) {
 
 void check_body(const SceneBody& body) {
   require(!body.voxel_size || *body.voxel_size > 0, "a voxel size is not positive");
-  require(body.voxel_size || std::holds_alternative<std::filesystem::path>(body.source),
-          "a shape has no voxel size");
   require(body.translation.allFinite() && is_rotation(body.rotation), "a body's pose is none");
 }
 
