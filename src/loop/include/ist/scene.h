@@ -75,8 +75,8 @@ struct SceneBody {
   bool attachable = false;                                 ///< the hand may take it and release it
   /// Of a fixed body: its motions from that place, as those of the tool, but about the middle of
   /// its own box; empty: it rests. It rests after the last waypoint, and is not attachable. With
-  /// `springs` it moves by half a voxel a tick at most. With `contact` it pushes the tool, and waits
-  /// if the tool cannot yield.
+  /// `springs` it moves by half a voxel a tick at most. With `contact` it pushes the tool, and
+  /// waits if the tool cannot yield.
   std::vector<Waypoint> script = {};
   std::filesystem::path script_file = {};  ///< from which `script` was read; empty otherwise
 };
