@@ -4,7 +4,7 @@ from report.results import Run
 from report.tables import Table, number
 
 PROGRAM = "hand_bench"
-PHASES = {"rests": "at rest, under 1 N at most", "pressed": "pressed, 5 N at most", "aside": "3 mm aside and back", "tilts": "3° tilted and back",
+PHASES = {"rests": "at rest, at most 1 N", "pressed": "pressed, at most 5 N", "aside": "3 mm aside and back", "tilts": "3° tilted and back",
           "all": "the whole press"}
 # The goals: µs of a tick at rest in the median, and of 999 of 1,000 ticks of a press by workers.
 AT_REST, SLOW = 50, {"1": 200, "2": 120}
