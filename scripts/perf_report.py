@@ -17,14 +17,14 @@ import re
 import sys
 
 from machine import build, machine, refuse
-from report import ablation, accuracy, counts, peers, scaling, seed, timing
+from report import ablation, accuracy, counts, hand, peers, scaling, seed, timing
 from report.draw import draw
 from report.figures import COUNTERS, ROOT, machine_state, stamp
 from report.results import Results
 from report.runner import Runner
 from report.tables import BLOCK
 
-TABLES = accuracy.TABLES | seed.TABLES | ablation.TABLES | peers.TABLES | scaling.TABLES | timing.TABLES
+TABLES = accuracy.TABLES | hand.TABLES | seed.TABLES | ablation.TABLES | peers.TABLES | scaling.TABLES | timing.TABLES
 PROGRAMS = list(dict.fromkeys(table.program for table in TABLES.values()))
 TABLES |= counts.TABLES
 PAGES = ("perf/REPORT.md", "docs/performance.md", "perf/HARDWARE.md")
