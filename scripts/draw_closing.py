@@ -31,9 +31,13 @@ def record(ist, scene, folder):
     return [line for line in map(json.loads, ticks.open()) if "device" in line], period, unit
 
 
+def touches(tick):
+    return tick["leaf_pairs"] > 0 or len(tick["points"]) > 0
+
+
 def draw(ticks, period, unit, output):
     times = [period * tick["tick"] for tick in ticks]
-    touching = [tick["leaf_pairs"] > 0 for tick in ticks]
+    touching = [touches(tick) for tick in ticks]
     plt.rcParams.update({"svg.hashsalt": "ist", "svg.fonttype": "none", "font.size": 9})
     figure, (felt, beyond) = plt.subplots(2, 1, sharex=True, figsize=(8, 4.6))
 
@@ -61,7 +65,7 @@ def main(ist, output, scene=None):
             scene = folder / "closing.toml"
             scene.write_text(re.search(r"^```toml\n(.*?)^```$", PAGE.read_text(), re.DOTALL | re.MULTILINE)[1])
         ticks, period, unit = record(pathlib.Path(ist).resolve(), pathlib.Path(scene), folder)
-    if not any(tick["leaf_pairs"] > 0 for tick in ticks):
+    if not any(map(touches, ticks)):
         sys.exit("draw_closing: nothing touches in this scene: let the plan go farther")
     draw(ticks[::EVERY], period, unit, pathlib.Path(output))
 

@@ -167,7 +167,7 @@ PressResult run(const PressedWall& wall, const PressSettings& settings,
     account.add(motion_between(tool, tick.tool), way, tick, result.energy);
     tool = tick.tool;
 
-    const bool contact = tick.leaf_pairs > 0;
+    const bool contact = tick.leaf_pairs > 0 || !tick.points.empty();
     if (contact && result.touching == 0) {
       result.allowance += (late_stiffness * period + damping) * period * speed * speed;
     }

@@ -28,4 +28,11 @@ std::optional<RelativePose> relative_pose(const Eigen::Isometry3d& pose, const F
   return result;
 }
 
+Eigen::Isometry3d to_isometry(const RelativePose& pose) noexcept {
+  Eigen::Isometry3d made = Eigen::Isometry3d::Identity();
+  made.linear() = pose.rotation;
+  made.translation() = pose.translation;
+  return made;
+}
+
 }  // namespace ist

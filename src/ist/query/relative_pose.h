@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <optional>
 
+#include "ist/base/api.h"
 #include "ist/base/ordered_vector.h"
 #include "ist/tree/frame_origin.h"
 
@@ -35,6 +36,9 @@ struct RelativePose {
                                            const Eigen::Vector3d& point) noexcept {
   return sum(turned(pose, point), pose.translation);
 }
+
+/// Returns the same motion as a pose.
+[[nodiscard]] IST_LOOP_API Eigen::Isometry3d to_isometry(const RelativePose& pose) noexcept;
 
 /// Returns how far any point of a box is at one pose from where it is at another. A displacement is
 /// affine in the point, so a corner has the longest way.

@@ -316,7 +316,6 @@ void detail::SimulationState::walk(const std::optional<Placement>& to, const Tic
     fault();
   }
   tick.points = wall->contacts();
-  tick.leaf_pairs = static_cast<double>(tick.points.size());
 }
 
 // A tick with springs, or without contacts.

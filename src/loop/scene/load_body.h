@@ -25,7 +25,7 @@ struct LoadedBody {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   double radius = 0;      ///< bounds the distance of the surface from there, mesh units
   double diagonal = 0;    ///< of its box, mesh units; without a mesh of the box round its voxels
-  double voxel_size = 0;  ///< mesh units; 0 if the scene needs no voxels
+  double voxel_size = 0;  ///< mesh units; 0 without voxels
 
   /// Whether it is fixed at some time of a run.
   [[nodiscard]] bool may_be_fixed() const { return !held || named->attachable; }

@@ -74,7 +74,7 @@ class FreeStart {
   double step_ = 0, farthest_ = 0;  // mesh units
 };
 
-// The steps in which a held body is opened without voxels, along its diagonal.
+// Without voxels a held body is opened by this part of its diagonal.
 constexpr double kOpenings = 500;
 
 // All pairs have a query at once, beside those of the loop: these are small, and slower by a tenth.
@@ -385,12 +385,13 @@ void Builder::place_tool() {
                   *way * scene_.unit));
 }
 
-// Lengths that a scene does not name are parts of the tool's size.
+// Lengths that a scene does not name are parts of the size of its largest body: a small tool may go
+// as fast along a jaw as a jaw.
 WallSettings Builder::wall_settings() const {
   constexpr double kSkins = 32'000, kTrusts = 8'000;
   double diagonal = 0;
   for (const LoadedBody& body : bodies_) {
-    if (body.held) diagonal = std::max(diagonal, scene_.unit * body.diagonal);
+    diagonal = std::max(diagonal, scene_.unit * body.diagonal);
   }
   const ContactSettings& contact = *scene_.contact;
   const auto length = [&](double asked, double part) {

@@ -151,8 +151,8 @@ void press_among(Scene scene, const std::string& name, int count) {
 // This could hide energy that the loop gives, so half of the presses are without them.
 TEST(AmongFiveBodies, PressesGiveNoEnergyBack) {
   const int count = std::max(2, samples(5));  // the ball is taken, and released
-  press_among(five_bodies(), ", among five bodies", count);
-  Scene smooth = five_bodies();
+  press_among(five_bodies(Keeps::kSprings), ", among five bodies", count);
+  Scene smooth = five_bodies(Keeps::kSprings);
   smooth.damping.reset();
   smooth.springs->stiffness = 1e6;
   press_among(smooth, ", among five smooth bodies", count);

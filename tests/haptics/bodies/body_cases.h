@@ -1,5 +1,8 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -31,9 +34,23 @@ inline constexpr DeviceMechanics kDeviceUnderTest{.damping = 2, .angular_damping
   return body;
 }
 
+/// The effect that keeps bodies apart.
+enum class Keeps : std::uint8_t { kContact, kSprings };
+
+/// Names a test of an effect.
+[[nodiscard]] inline std::string name_of(const ::testing::TestParamInfo<Keeps>& keeps) {
+  return keeps.param == Keeps::kContact ? "contact" : "springs";
+}
+
+inline void keep_apart(Scene& scene, Keeps keeps, const SpringsSettings& springs = {}) {
+  scene.contact.reset();
+  scene.springs.reset();
+  keeps == Keeps::kContact ? void(scene.contact.emplace()) : void(scene.springs = springs);
+}
+
 /// A ball of radius 5 mm over a floor, z = 0, between two walls, x = -12 and x = 12, and 30 mm
-/// along y a loose ball of radius 4 over the floor. The device rests; springs and damping.
-[[nodiscard]] inline Scene five_bodies() {
+/// along y a loose ball of radius 4 over the floor. The device rests; there is damping.
+[[nodiscard]] inline Scene five_bodies(Keeps keeps) {
   Scene scene{.unit = 1e-3};
   scene.fixed = {box_body("floor", {-30, -30, -8}, {30, 60, 0}),
                  box_body("left", {-20, -30, 1}, {-12, 60, 30}),
@@ -41,7 +58,7 @@ inline constexpr DeviceMechanics kDeviceUnderTest{.damping = 2, .angular_damping
                  ball_body("loose", {0, 30, 5.5}, 4)};
   scene.fixed.back().attachable = true;
   scene.held = {ball_body("tool", {0, 0, 6}, 5)};
-  scene.springs = SpringsSettings{};
+  keep_apart(scene, keeps);
   scene.damping = DampingSettings{};
   scene.device = NullSettings{kDeviceUnderTest};
   return scene;

@@ -287,7 +287,7 @@ bool is_same_place(const Placement& a, const Placement& b) {
 // The tool is pressed on the floor, and far from the walls and from the loose ball. A few tests are
 // enough for these, and not for the floor, which is the first pair.
 TEST(UnfinishedPair, HoldsTheTool) {
-  const BuiltScene built = build_scene(five_bodies());
+  const BuiltScene built = build_scene(five_bodies(Keeps::kSprings));
   Simulation& simulation = *built.simulation;
   const Placement start = simulation.tool_pose();
   Placement last = start;

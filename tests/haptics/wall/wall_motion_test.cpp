@@ -173,6 +173,17 @@ TEST(WallMotion, ScriptSqueezesTool_KeepsTheTrust) {
   EXPECT_EQ(wall.held(), 0);
 }
 
+// A ball on a plate, and 0.05 mm beside a post.
+TEST(WallMotion, DistanceOfTick_IsTheLeastOfAllBodies) {
+  const TriangleMesh post = box({4.05, -1, -1}, {7, 1, 9});
+  WallCase wall({{wall_plate()}, {post}}, wall_ball(), at_mm(0, 0, 5));
+  const Tick tick = wall.go(at_mm(0, 0, 3.9), 300);
+  ASSERT_FALSE(tick.points.empty());
+  ASSERT_TRUE(tick.contacts && tick.contacts->distance);
+  EXPECT_NEAR(tick.contacts->distance->lower, 0.005, 1e-6) << "mesh units";
+  EXPECT_NEAR(tick.contacts->distance->upper, 0.005, 1e-6);
+}
+
 // The tool can make no way between a plate that rests and one that rises. The script waits.
 TEST(WallMotion, ToolPinnedByScript_ScriptWaits) {
   const TriangleMesh above = box({-20, -20, 4.5}, {20, 20, 6});

@@ -57,13 +57,6 @@ bool NearCache::holds(const List& list, const RelativePose& pose, const Need& ne
   return need.enough + way(list.centre, pose) + spare + 4 * need.error <= list.reach;
 }
 
-Eigen::Isometry3d NearCache::rigid(const RelativePose& pose) noexcept {
-  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
-  out.linear() = pose.rotation;
-  out.translation() = pose.translation;
-  return out;
-}
-
 RelativePose NearCache::ahead(double ticks) const noexcept {
   const RelativePose& pose = poses_[0];
   const std::size_t first = std::min(ticks_, kTicks) - 1;
@@ -75,7 +68,7 @@ RelativePose NearCache::ahead(double ticks) const noexcept {
   const Eigen::Vector3d step = difference(pose.translation, before.translation);
   const RelativePose there{turn.toRotationMatrix() * pose.rotation,
                            sum(pose.translation, scaled(part, step))};
-  const std::optional<Eigen::Isometry3d> made = project_to_rigid(rigid(there));
+  const std::optional<Eigen::Isometry3d> made = project_to_rigid(to_isometry(there));
   return made ? RelativePose{made->linear(), made->translation()} : pose;
 }
 

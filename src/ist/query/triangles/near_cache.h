@@ -47,7 +47,7 @@ class NearCache {
   void prepare(const Need& need, std::uint64_t tests, const Budget& budget, FoundMemory& memory,
                PoseOf pose_of) noexcept {
     if (want(need, tests)) {
-      const ClusterPose pose = pose_of(rigid(next().centre));
+      const ClusterPose pose = pose_of(to_isometry(next().centre));
       walk_.begin(pose, rounded_up(next().reach + double{pose.error}));
     }
     advance(budget, memory);
@@ -91,7 +91,6 @@ class NearCache {
   [[nodiscard]] bool holds(const List& list, const RelativePose& pose, const Need& need,
                            double spare = 0) const noexcept;
   [[nodiscard]] RelativePose ahead(double ticks) const noexcept;
-  [[nodiscard]] static Eigen::Isometry3d rigid(const RelativePose& pose) noexcept;
   [[nodiscard]] bool want(const Need& need, std::uint64_t tests) noexcept;
   void advance(const Budget& budget, FoundMemory& memory) noexcept;
   [[nodiscard]] bool take(FoundTriangles& found) noexcept;

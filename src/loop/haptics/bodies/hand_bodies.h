@@ -34,6 +34,8 @@ class HandBodies {
   HandBodies(double unit, const Placement& home, std::vector<BodyPart> parts);
 
   [[nodiscard]] std::size_t size() const noexcept { return bodies_.size(); }
+  /// Metres in a mesh unit.
+  [[nodiscard]] double unit() const noexcept { return unit_; }
   [[nodiscard]] const std::string& name(std::size_t body) const noexcept {
     return bodies_[body].name;
   }

@@ -47,7 +47,7 @@ class FeatureList {
   /// @param near   in the order of their distance
   /// @param pose   maps moving mesh coordinates to fixed mesh coordinates; rigid
   /// @param margin features with a wider gap are left out
-  /// Cost: 0.1 µs a pair that has no minimum, 1 µs a pair that has one.
+  /// Cost: 0.1 µs a pair without a minimum, 1 µs a pair with one.
   void find(std::span<const NearPair> near, const Eigen::Isometry3d& pose, double margin,
             Which which) noexcept;
 

@@ -14,7 +14,7 @@ constexpr int kMostSteps = 200;
 constexpr double kLeastPivot = 1e-14;
 // A direction whose square across the active bounds is a smaller part of it depends on them.
 constexpr double kDependent = 1e-16;
-// An active bound takes no part in another one if its part is smaller.
+// A smaller part of an active bound in another one counts as none.
 constexpr double kNoPart = 1e-12;
 
 template <std::size_t n>
@@ -125,7 +125,7 @@ bool NearestMotion::solve(const Matrix6& metric, const Vector6& wanted, double t
     for (; step < kMostSteps; ++step) {
       Vector rest, parts;
       project(along, rest, parts);
-      // The largest push before that of an active bound vanishes, and before the bound is met.
+      // The push ends if an active bound lets go, or if the bound is met.
       double least = kNever;
       std::size_t vanishes = active_;
       for (std::size_t k = 0; k < active_; ++k) {

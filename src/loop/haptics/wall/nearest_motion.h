@@ -12,9 +12,9 @@ namespace ist {
 ///
 ///     minimise (m - wanted)ᵀ S (m - wanted) / 2   with   aᵢ · m >= bᵢ
 ///
-/// The multipliers of the bounds are the forces with which the bounds push: S (m - wanted) = Σ fᵢ
-/// aᵢ, fᵢ >= 0. The result does not depend on rounding modes or instruction sets: it uses + - * /
-/// and square roots in a fixed order.
+/// The multipliers fᵢ >= 0 of the bounds are the contact forces: S (m - wanted) = Σ fᵢ aᵢ. The
+/// result does not depend on rounding modes or instruction sets: it uses + - * / and square roots
+/// in a fixed order.
 ///
 /// Source: D. Goldfarb and A. Idnani, A numerically stable dual method for solving strictly convex
 /// quadratic programs, Mathematical Programming 27, 1983. At most six bounds are active.
@@ -25,7 +25,7 @@ class NearestMotion {
 
   /// Removes all bounds.
   void clear() noexcept { bounds_.clear(); }
-  /// Adds the bound along · m >= least, m and rad. Returns false if there is no room.
+  /// Adds the bound along · m >= least, m and rad. Returns whether there was room.
   bool add(const Vector6& along, double least) noexcept;
   [[nodiscard]] std::size_t size() const noexcept { return bounds_.size(); }
 
@@ -58,8 +58,7 @@ class NearestMotion {
   };
 
   void factor(const Matrix6& metric) noexcept;
-  // Solves the normal equations of the active bounds for those of `along`. Returns what is left of
-  // `along` across them.
+  // Splits `along` into parts of the active bounds and a rest across them.
   void project(const Vector& along, Vector& rest, Vector& parts) noexcept;
   void drop(std::size_t active) noexcept;
 

@@ -34,8 +34,8 @@ class Surface {
   [[nodiscard]] bool is_flat(const SurfacePart& part) const noexcept;
   /// Returns whether a direction leaves the surface at a part: no triangle at the part ascends
   /// along the direction by more than `tolerance`, the sine of an angle. A point that is away from
-  /// the part in such a direction has no closer point nearby. Always true for a triangle. Cost: 5
-  /// ns a neighbour.
+  /// the part in such a direction has no closer point nearby. A triangle itself never blocks. Cost:
+  /// 5 ns a neighbour.
   /// @param direction of unit length, mesh coordinates
   [[nodiscard]] bool leaves(const SurfacePart& part, const Eigen::Vector3d& direction,
                             double tolerance) const noexcept;

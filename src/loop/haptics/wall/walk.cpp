@@ -18,7 +18,7 @@ constexpr double kDriftPart = 0.5;
 constexpr double kWithin = 0.999;
 // A motion that is so many times as long as the wanted one, or as the trust, opens no gap.
 constexpr double kLong = 8;
-// Ticks after a held one that ask no distance: it takes longer than near pairs.
+// Ticks without a distance after a held one. A distance takes longer than near pairs.
 constexpr int kCareful = 8;
 // The least part of the trust in use.
 constexpr double kLeastPart = 1.0 / 16;
@@ -26,6 +26,8 @@ constexpr double kLeastPart = 1.0 / 16;
 // Returns the largest part of `step`, at most 1, with |way - part * step| <= most. Returns 0 if
 // there is none.
 double part_within(const Eigen::Vector3d& way, const Eigen::Vector3d& step, double most) noexcept {
+  // A step that is long enough to be cut is too long to underflow.
+  if (length_in_order(difference(way, step)) <= most) return 1;
   const double a = square_in_order(step), b = dot_in_order(way, step);
   const double spare = std::max(0.0, most * most - square_in_order(way));
   if (!(a > 0)) return 1;

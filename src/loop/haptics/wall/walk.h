@@ -29,7 +29,7 @@ class Walk {
     const VirtualCoupling& coupling;
     double dt;  // of a tick, s
   };
-  /// What the tool walks to, and with what.
+  /// The input of a walk.
   struct Goal {
     const Placement& device;
     Vector6 device_motion;  // in the tick
@@ -57,7 +57,7 @@ class Walk {
 
   Parts parts_;
   bool near_ = false;  // something was near in the last step
-  int careful_ = 0;    // ticks to come that ask no distance, since a tick was held
+  int careful_ = 0;    // the next ticks without a distance, after a held one
   double part_ = 1;    // of the trust in use: each tick that is held halves it
 };
 

@@ -80,6 +80,7 @@ bool Wall::find(const HandBodies& bodies, const Placement& tool, double wanted,
                 const Budget& budget, QueryResult& result, ToolContacts& contacts) noexcept {
   contacts.clear();
   trust_ = HUGE_VAL;
+  DistanceInterval gaps{HUGE_VAL, HUGE_VAL};  // m
   Budget rest = budget;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
@@ -87,12 +88,13 @@ bool Wall::find(const HandBodies& bodies, const Placement& tool, double wanted,
     if (!bodies.may_touch(pair.bodies.fixed, pair.bodies.held)) continue;
     const double clear = clearance(bodies, pair, tool);
     if (clear > wanted + margin()) {
+      gaps.lower = std::min(gaps.lower, clear);
       trust_ = std::min(trust_, clear - settings_.skin);
       continue;
     }
     pair.asked = true;
     const BodyFrames frames = bodies.frames(pair.bodies.fixed, pair.bodies.held);
-    // Steps of the trust are shorter than a way for which the distance would have to be known.
+    // Near pairs alone allow all steps of the trust. Only a longer way needs the distance.
     const double in_steps = settings_.steps * step_;
     const double beyond = wanted > in_steps ? wanted + margin() : 0;
     const WallPair::Search search = pair.pair->find(frames.query_pose(tool), margin() / frames.unit,
@@ -106,27 +108,28 @@ bool Wall::find(const HandBodies& bodies, const Placement& tool, double wanted,
     }
     if (rest.has_tests()) rest.tests -= std::min(rest.tests, search.tests);
     const double gap = frames.unit * pair.pair->least_gap();
-    if (!result.distance) result.distance = {gap, gap};
-    result.distance->lower = std::min(result.distance->lower, gap);
-    result.distance->upper =
-        pair.pair->is_near() ? std::min(result.distance->upper, gap) : HUGE_VAL;
+    gaps.lower = std::min(gaps.lower, gap);
+    if (pair.pair->is_near()) gaps.upper = std::min(gaps.upper, gap);
     trust_ = std::min(trust_, pair.pair->is_near() ? step_ : gap - settings_.skin);
     pair.pair->list(FeatureList::Which::kMinima);
     contacts.begin_pair(i);
     contacts.pairs().back().drift = bodies.drift(pair.bodies.fixed, tool);
-    add_to(contacts, pair, i, frames, tool);
+    add_to(contacts, pair, frames, tool);
   }
   for (const HandPair& pair : far_) {
     if (!bodies.may_touch(pair.fixed, pair.held)) continue;
-    trust_ = std::min(trust_, bodies.gap(pair.fixed, pair.held, tool) - settings_.skin);
+    const double apart = bodies.gap(pair.fixed, pair.held, tool);
+    gaps.lower = std::min(gaps.lower, apart);
+    trust_ = std::min(trust_, apart - settings_.skin);
   }
+  result.distance = {std::max(gaps.lower, 0.0) / bodies.unit(), gaps.upper / bodies.unit()};
   return trust_ > 0;
 }
 
 // Gives the nearest features to effects. A feature's part of the stiffness grows as its gap
 // narrows, so that it appears without a jump.
-void Wall::add_to(ToolContacts& contacts, const Pair& pair, std::size_t /*number*/,
-                  const BodyFrames& frames, const Placement& tool) const noexcept {
+void Wall::add_to(ToolContacts& contacts, const Pair& pair, const BodyFrames& frames,
+                  const Placement& tool) const noexcept {
   const std::span<const Feature> features = pair.pair->features();
   const double share = 1 / std::max(1.0, static_cast<double>(features.size()) / kFullFeatures);
   for (const Feature& feature : features) {

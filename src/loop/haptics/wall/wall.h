@@ -22,7 +22,7 @@ struct WallSettings {
   double skin;          ///< gap that a contact keeps
   double trust;         ///< longest way of a held surface in a step near a fixed body
   int steps = 3;        ///< of a tick, at most
-  double friction = 0;  ///< ratio of tangential to normal force at which a contact slides
+  double friction = 0;  ///< a contact slides at this ratio of tangential to normal force
 };
 
 /// Keeps the tool out of all fixed bodies. The tool is a proxy of the hand: it moves to the balance
@@ -33,7 +33,7 @@ struct WallSettings {
 ///     n · (v + w × r) >= skin - gap
 ///
 /// for each of them. NearestMotion finds the motion; the bounds' multipliers are the contact
-/// forces. The step is no longer than the trust, so that no triangles meet that were not listed,
+/// forces. The step is no longer than the trust, so triangles that were not listed cannot meet,
 /// and its end is proven free by the exact triangles.
 ///
 /// Source: M. Ortega, S. Redon and S. Coquillart, A six degree-of-freedom god-object method for
@@ -46,7 +46,7 @@ class Wall {
 
   /// Adds a pair of bodies. Reserves memory.
   void add(const HandPair& bodies, std::unique_ptr<WallPair> pair);
-  /// Adds a pair that is not expected to meet. The tool goes no farther than the balls of its
+  /// Adds a pair without a query. The tool goes no farther than the balls of its
   /// bodies let it.
   void add_far(const HandPair& bodies);
 
@@ -65,7 +65,7 @@ class Wall {
   /// Finds all that is near the tool. Fills `contacts` with the features, for effects. Returns
   /// whether the budget let it come to its end.
   /// @param wanted the longest way that the next motion may take, m
-  /// @param result counts the tests
+  /// @param result counts the tests, and takes the least distance of all pairs, mesh units
   bool find(const HandBodies& bodies, const Placement& tool, double wanted, const Budget& budget,
             QueryResult& result, ToolContacts& contacts) noexcept;
   /// The longest way that find() allows, m.
@@ -74,7 +74,7 @@ class Wall {
   [[nodiscard]] bool is_near() const noexcept;
   /// Whether the bodies of a pair meet, or are as near as in a contact.
   enum class Touch : std::uint8_t { kApart, kTouching, kMeeting, kUnknown };
-  /// Returns the closest touch of all pairs of which one body is `body`.
+  /// Returns the closest touch of all pairs with this body.
   [[nodiscard]] Touch touch(const HandBodies& bodies, const Placement& tool, std::size_t body,
                             const Budget& budget) noexcept;
 
@@ -83,7 +83,7 @@ class Wall {
     FeatureList::Which features = FeatureList::Which::kMinima;
     bool asks_for_skin = true;  ///< a gap that is too narrow opens
   };
-  /// Bounds the motion of the next step, in which fixed bodies drift.
+  /// Bounds the motion of the next step. Fixed bodies drift in it.
   NearestMotion& bound(const HandBodies& bodies, const Placement& tool,
                        const Bounding& how) noexcept;
   /// The bounds that were made last.
@@ -103,7 +103,7 @@ class Wall {
   void keep_contacts() noexcept { std::swap(contacts_, noted_); }
   void drop_contacts() noexcept { contacts_.clear(); }
   [[nodiscard]] std::span<const ContactPoint> contacts() const noexcept { return contacts_; }
-  /// Forgets what is known of earlier poses.
+  /// Forgets earlier poses.
   void forget() noexcept;
 
  private:
@@ -112,7 +112,7 @@ class Wall {
     std::unique_ptr<WallPair> pair;
     bool asked;  // by the last find()
   };
-  // The feature of a bound, and the direction in which the bound pushes.
+  // The feature of a bound, and the direction of its push.
   struct BoundOf {
     std::size_t pair, feature;
     Eigen::Vector3d along;
@@ -121,8 +121,8 @@ class Wall {
   [[nodiscard]] double margin() const noexcept { return settings_.skin + step_; }
   [[nodiscard]] double clearance(const HandBodies& bodies, const Pair& pair,
                                  const Placement& tool) const noexcept;
-  void add_to(ToolContacts& contacts, const Pair& pair, std::size_t number,
-              const BodyFrames& frames, const Placement& tool) const noexcept;
+  void add_to(ToolContacts& contacts, const Pair& pair, const BodyFrames& frames,
+              const Placement& tool) const noexcept;
   void bound(const BoundOf& of, const Eigen::Vector3d& arm, double least,
              const Vector6& drift) noexcept;
 

@@ -37,13 +37,6 @@ QueryOptions of_query(const WallPair::Options& options) {
   return of;
 }
 
-Eigen::Isometry3d to_pose(const RelativePose& relative) noexcept {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = relative.rotation;
-  pose.translation() = relative.translation;
-  return pose;
-}
-
 RelativePose relative(const Eigen::Isometry3d& pose) noexcept {
   return {pose.linear(), pose.translation()};
 }
@@ -91,7 +84,7 @@ WallPair::Search WallPair::find(const Eigen::Isometry3d& pose, double margin, do
   clear_ = is_near() ? 0 : margin;
   clear_pose_ = pose_;
   if (is_near() || !(wanted > margin)) return search;
-  // With a limit of tests the answer does not depend on earlier questions.
+  // A limit of tests makes the answer independent of earlier questions.
   Budget rest = budget;
   rest.tests = rest.has_tests() ? rest.tests - std::min(rest.tests, search.tests) : kManyTests;
   const DistanceResult distance = query_.distance(pose, 0.5 * wanted, rest);
@@ -107,7 +100,7 @@ WallPair::Search WallPair::find(const Eigen::Isometry3d& pose, double margin, do
 
 void WallPair::list(FeatureList::Which which) noexcept {
   if (listed_ == which) return;
-  list_.find(std::span(near_).first(near_count_), to_pose(pose_), margin_, which);
+  list_.find(std::span(near_).first(near_count_), to_isometry(pose_), margin_, which);
   listed_ = which;
 }
 

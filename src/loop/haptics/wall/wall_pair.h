@@ -18,7 +18,7 @@ namespace ist {
 
 /// A body's tree with the parts of its surface.
 struct WallBody {
-  /// Throws as require_triangles() does.
+  /// Throws kTrianglesMissing.
   explicit WallBody(const SphereTree& of);
 
   SphereTree tree;
@@ -35,7 +35,7 @@ class WallPair {
     std::size_t features = 512;  ///< the most that are listed
     std::string target = {};     ///< as QueryOptions
   };
-  /// Reserves all memory. Throws as Query does.
+  /// Reserves all memory. Throws the errors of Query.
   WallPair(std::shared_ptr<const WallBody> fixed, std::shared_ptr<const WallBody> held,
            const Options& options);
 

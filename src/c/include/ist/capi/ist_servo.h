@@ -8,7 +8,8 @@
  *
  * The caller chooses metres or millimetres for poses. Forces are in N and torques in N m about the
  * tool's origin, both along the scene's axes. The tool's frame has the axes of the first held mesh;
- * its origin is the root cube's centre of that body. Poses map the tool's frame to the scene.
+ * its origin is the middle of that mesh's box, or the point that the scene names. Poses map the
+ * tool's frame to the scene.
  */
 
 #include "ist/capi/ist_c.h"

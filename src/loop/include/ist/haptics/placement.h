@@ -17,7 +17,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1, Eigen::DontAlign>;
 using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::DontAlign>;
 
 /// The pose of the tool: a map from the tool's frame to the scene's, both in metres. The tool's
-/// origin is the root cube's centre of the held body.
+/// origin is the middle of the held body's box, or the point that the scene names.
 struct IST_API Placement {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< tool axes to scene axes
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();   ///< of the tool's origin, m

@@ -46,7 +46,7 @@ struct TickRecord {
   std::int32_t steps;                   ///< Tick::steps
   std::optional<QueryResult> contacts,  ///< Tick::contacts, mesh units
       proximity;                        ///< Tick::proximity, mesh units
-  double leaf_pairs;                    ///< load-bearing leaf pairs, by weight
+  double leaf_pairs;                    ///< Tick::leaf_pairs
   std::uint32_t point_count;            ///< of Tick::points
   /// The first `point_count` are Tick::points.
   std::array<ContactRecord, Tick::kMostPoints> points;

@@ -34,8 +34,8 @@ enum class ServoTick {
 /// and sends the returned force to the motors. run_servo_loop() is the library's own loop.
 ///
 /// Poses are 16 doubles in column-major order; they map the tool's frame to the scene's. The tool's
-/// origin is the root cube's centre of the held body, its axes are the held mesh's, and torques are
-/// about that origin.
+/// origin is the middle of the held body's box or the point that the scene names, its axes are the
+/// held mesh's, and torques are about that origin.
 ///
 /// Call on_tick() every Simulation::dt() seconds; each call counts as a tick of that length. One
 /// thread calls at a time, but any thread may call last(). Scheduling the loop's thread for real

@@ -99,8 +99,8 @@ struct Tick {
   /// units. Empty if no effect needs the query.
   std::optional<QueryResult> contacts = {},  ///< of the contacts
       proximity = {};                        ///< of the proximity points
-  double leaf_pairs = 0;                     ///< load-bearing leaf pairs, by weight
-  std::optional<HandChange> change = {};     ///< that the scene planned for this tick
+  double leaf_pairs = 0;  ///< with `springs`: load-bearing leaf pairs, by weight; else 0
+  std::optional<HandChange> change = {};  ///< that the scene planned for this tick
 };
 
 /// An effect of a simulation and the time spent in it.

@@ -175,7 +175,7 @@ class IST_API Effect {
 };
 
 /// `contact`: the tool never intersects a fixed body. Lengths are in the scene's unit. A length of
-/// 0 means its default, a fraction of the diagonal of the tool's box.
+/// 0 means its default, a fraction of the diagonal of the largest body's box.
 struct ContactSettings {
   double skin = 0;   ///< gap that a contact keeps; by default 1/32,000 of the diagonal
   double trust = 0;  ///< longest way of the held surface in a step near a fixed body; by default
