@@ -182,7 +182,7 @@ class Packages(Installed, Pages):
         """Debian's checker has nothing to say of the packages, but for what src/package/lintian argues."""
         need("lintian", "dpkg-deb", "dpkg-query", "dpkg-shlibdeps", "file", "pkg-config", "help2man")
         packages = sorted((self.work / "debian/packages").glob("*.deb"))
-        require(len(packages) == 4, f"the packages are {packages}")
+        require(len(packages) == 5, f"the packages are {packages}")
         said = run("lintian", "--allow-root", "--tag-display-limit", "0", "--display-info", "--pedantic", "--fail-on",
                    "none", *packages)
         # A build with assertions calls libc where others do not.
@@ -260,7 +260,7 @@ class Packages(Installed, Pages):
         lines = run(self.compiler, "-std=c++20", *flags[:-1], "-M", "-x", "c++", self.prefix / "include/ist/ist.h")
         ours = {name for name in lines.replace("\\\n", " ").split() if "/include/ist/" in name}
         count = sum(len(pathlib.Path(name).read_text().splitlines()) for name in ours)
-        require(count < 1500, f"ist/ist.h pulls in {count} lines")
+        require(count < 1600, f"ist/ist.h pulls in {count} lines")
         print(f"ist/ist.h pulls in {len(ours)} headers, {count} lines")
 
     def Example(self):
