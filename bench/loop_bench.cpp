@@ -226,15 +226,14 @@ class SplintPairs {
       const SphereTree& tree = *built_.trees[i].contact;
       parts.push_back({body.name,
                        {body.rotation, scene_.unit * body.translation},
-                       tree.origin(),
+                       held ? built_.origin : tree.origin(),
                        scene_.unit * surface_radius(tree),
                        held});
     }
     const std::size_t held = scene_.fixed.size();
     const SceneBody& mandible = scene_.held.front();
     const Placement home{mandible.rotation,
-                         scene_.unit * (mandible.rotation * built_.trees[held].contact->origin() +
-                                        mandible.translation)};
+                         scene_.unit * (mandible.rotation * built_.origin + mandible.translation)};
     bodies_ = HandBodies(scene_.unit, home, std::move(parts));
     for (std::size_t fixed = 0; fixed < held; ++fixed) {
       together_.add({fixed, held}, query(fixed, held));

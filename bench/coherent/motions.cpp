@@ -20,7 +20,7 @@ Poses recorded(const Scene& scene, std::size_t first, std::size_t end) {
   const BodyFrames frames{
       scene.unit,
       {scene.fixed.front().rotation, scene.unit * scene.fixed.front().translation},
-      built.trees.back().contact->origin()};
+      built.origin};
   Poses poses;
   for (std::size_t i = 0; i < end; ++i) {
     if (i >= first) poses.push_back(frames.query_pose(built.simulation->tool_pose()));

@@ -103,5 +103,22 @@ TEST(SceneFrames, AnotherUnitIsFeltTheSame) {
   }
 }
 
+// A caller turns poses of the tool into poses of the held mesh by this origin.
+TEST(SceneFrames, TheOriginPlacesTheHeldMesh) {
+  const Scene plain = tilted_scene();
+  for (const std::optional<Vector3d>& named :
+       {std::optional<Vector3d>(), std::optional<Vector3d>(Vector3d(1, -2, 3))}) {
+    Scene scene = plain;
+    scene.origin = named;
+    const BuiltScene built = build_scene(scene);
+    const SceneBody& held = scene.held.front();
+    if (named) {
+      EXPECT_EQ(built.origin, *named);
+    }
+    const Vector3d origin = scene.unit * (held.rotation * built.origin + held.translation);
+    EXPECT_LT((built.simulation->tool_pose().translation - origin).norm(), 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace ist::test

@@ -156,6 +156,7 @@ class Builder {
     voxels_ = !scene_.contact && (scene_.springs || own);
     bodies_ = load_bodies(scene_, voxels_, built_.warnings);
     home_ = home_of(bodies_[scene_.fixed.size()]);
+    built_.origin = home_.origin;
     choose_effects();
     built_.trees = build_scene_trees(scene_, bodies_, needs_, max_memory_, notes_, progress_);
     place_bodies();

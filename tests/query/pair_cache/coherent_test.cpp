@@ -122,11 +122,12 @@ TEST_P(RecordedHand, IsAnsweredAsByAFreshQuery) {
   file.contact.reset();
   file.friction.reset();
   file.springs = SpringsSettings{};
+  file.fixed.front().voxel_size = file.held.front().voxel_size = 0.5;
   file.fixed.front().spheres = file.held.front().spheres = GetParam();
   BuiltScene built = build_scene(file);
   const BodyFrames frames{file.unit,
                           {file.fixed.front().rotation, file.unit * file.fixed.front().translation},
-                          built.trees.back().contact->origin()};
+                          built.origin};
   std::vector<Eigen::Isometry3d> poses;
   for (int i = 0; i < 6000; ++i) {
     poses.push_back(frames.query_pose(built.simulation->tool_pose()));

@@ -168,6 +168,8 @@ struct BuiltScene {
   std::vector<BodyTrees> trees = {};            ///< by body: the fixed ones, then the held ones
   std::unique_ptr<Simulation> simulation = {};  ///< refers to the trees
   std::unique_ptr<Device> device = {};          ///< as Scene::device says
+  /// The tool's origin in mesh coordinates of the first held body.
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   double step_limit = 0;  ///< bound on the displacement of the tool's surface in a tick, m
   std::vector<BuildNote> notes = {};       ///< in the order of building
   std::vector<std::string> warnings = {};  ///< sentences for people
