@@ -16,6 +16,14 @@ static_assert(alignof(Eigen::Isometry3d) >= 16,
               "EIGEN_DONT_ALIGN_STATICALLY, or an EIGEN_MAX_ALIGN_BYTES below 16");
 #endif
 
+/// A motion, a velocity or a wrench: three numbers of translation, then three of rotation about a
+/// point. In the loop a motion is in m and rad, a velocity in m/s and rad/s, a wrench in N and N m
+/// about the tool's origin, and axes are the scene's.
+using Vector6 = Eigen::Matrix<double, 6, 1, Eigen::DontAlign>;
+/// The derivative of a wrench by a motion: N/m, N and N m. The layout is the same for every
+/// instruction set.
+using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::DontAlign>;
+
 /// Returns the rigid motion nearest to `pose`, or nullopt if `pose` is no rigid motion
 /// (why_not_rigid). The rotation of the result is orthonormal to a few 1e-16; an exactly
 /// orthonormal one, such as the identity or a quarter turn, is returned bit for bit.

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "ist/constraint/nearest_motion.h"
 #include "ist/haptics/effects/effect.h"
 #include "ist/haptics/simulation.h"
 #include "ist/tree/sphere_tree.h"
 #include "loop/haptics/coupling.h"
-#include "loop/haptics/wall/nearest_motion.h"
 
 namespace ist {
 

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "ist/constraint/nearest_motion.h"
 #include "ist/haptics/effects/effect.h"
 #include "ist/haptics/simulation.h"
 #include "loop/haptics/bodies/hand_bodies.h"
 #include "loop/haptics/bodies/pair_queries.h"
-#include "loop/haptics/wall/nearest_motion.h"
 #include "loop/haptics/wall/wall_pair.h"
 
 namespace ist {

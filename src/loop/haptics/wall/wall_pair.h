@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "ist/constraint/features.h"
+#include "ist/constraint/surface.h"
 #include "ist/query/query.h"
 #include "ist/query/relative_pose.h"
-#include "loop/haptics/wall/features.h"
-#include "loop/haptics/wall/surface.h"
 
 namespace ist {
 

@@ -8,14 +8,6 @@
 
 namespace ist {
 
-/// A motion, a velocity or a wrench: three numbers of translation, then three of rotation. A motion
-/// is in m and rad, a velocity in m/s and rad/s, a wrench in N and N m about the tool's origin.
-/// Axes are the scene's.
-using Vector6 = Eigen::Matrix<double, 6, 1, Eigen::DontAlign>;
-/// The derivative of a wrench by a motion: N/m, N and N m. The layout is the same for every
-/// instruction set.
-using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::DontAlign>;
-
 /// The pose of the tool: a map from the tool's frame to the scene's, both in metres. The tool's
 /// origin is the middle of the held body's box, or the point that the scene names.
 struct IST_API Placement {

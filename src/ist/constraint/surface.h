@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "ist/base/api.h"
 #include "ist/mesh/mesh.h"
 #include "ist/query/results.h"
 
@@ -22,7 +23,7 @@ struct SurfacePart {
 
 /// The vertices and edges of a mesh with their neighbours. Vertices at one position count as one.
 /// Refers to the mesh. Memory: some 70 bytes a triangle. Cost: 0.3 µs a triangle.
-class Surface {
+class IST_LOOP_API Surface {
  public:
   explicit Surface(const TriangleMesh& mesh);
 

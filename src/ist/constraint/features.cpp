@@ -1,4 +1,4 @@
-#include "loop/haptics/wall/features.h"
+#include "ist/constraint/features.h"
 
 #include <array>
 #include <cmath>
@@ -53,7 +53,7 @@ void FeatureList::KeySet::clear() noexcept {
 FeatureList::FeatureList(const Surface& fixed, const Surface& moving, std::size_t room)
     : fixed_(fixed),
       moving_(moving),
-      cell_(bounding_box(moving.mesh()).diagonal().norm() / kCells),
+      cell_(length_in_order(bounding_box(moving.mesh()).diagonal()) / kCells),
       seen_(4 * room),
       cells_(room) {
   features_.reserve(room);

@@ -7,8 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "ist/base/api.h"
+#include "ist/constraint/surface.h"
 #include "ist/query/results.h"
-#include "loop/haptics/wall/surface.h"
 
 namespace ist {
 
@@ -29,7 +30,7 @@ struct Feature {
 /// local minima of the distance are needed for that: features whose normal leaves both surfaces.
 /// Edges and vertices inside plane regions are left out, because the corners of these regions say
 /// the same. They stay if a corner is right above them. All other features would catch at seams.
-class FeatureList {
+class IST_LOOP_API FeatureList {
  public:
   /// The normal of a local minimum may ascend by so much, a sine. Surfaces that are nearly parallel
   /// have several minima that nearly tie.

@@ -1,4 +1,4 @@
-#include "loop/haptics/wall/surface.h"
+#include "ist/constraint/surface.h"
 
 #include <gtest/gtest.h>
 

@@ -4,11 +4,12 @@
 #include <span>
 #include <vector>
 
-#include "ist/haptics/placement.h"
+#include "ist/base/api.h"
+#include "ist/base/pose.h"
 
 namespace ist {
 
-/// Finds the motion of the tool that is nearest to a wanted one and obeys linear bounds:
+/// Finds the motion of a body that is nearest to a wanted one and obeys linear bounds:
 ///
 ///     minimise (m - wanted)ᵀ S (m - wanted) / 2   with   aᵢ · m >= bᵢ
 ///
@@ -18,7 +19,7 @@ namespace ist {
 ///
 /// Source: D. Goldfarb and A. Idnani, A numerically stable dual method for solving strictly convex
 /// quadratic programs, Mathematical Programming 27, 1983. At most six bounds are active.
-class NearestMotion {
+class IST_LOOP_API NearestMotion {
  public:
   /// Reserves room for `room` bounds.
   explicit NearestMotion(std::size_t room);

@@ -1,4 +1,4 @@
-#include "loop/haptics/wall/nearest_motion.h"
+#include "ist/constraint/nearest_motion.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "loop/haptics/wall/features.h"
+#include "ist/constraint/features.h"
 
 #include <gtest/gtest.h>
 
