@@ -12,17 +12,21 @@
 namespace ist {
 namespace {
 
-// A list is worth its search if it answers in so many ticks.
-constexpr double kFewestTicks = 6;
+// A list is worth its search if it answers in so many ticks: filled in slices, or at once.
+constexpr double kFewestTicks = 4, kFewestAtOnce = 3;
 // A list that answers in so many ticks is wide enough.
 constexpr double kWantedTicks = 14;
 // A list is filled in so many ticks, if the last list lasts as long.
-constexpr double kFewestSlices = 5, kMostSlices = 32;
+constexpr double kFewestSlices = 2, kMostSlices = 32;
 // The fewest tests of a slice, 8 µs.
 constexpr std::uint64_t kLeastSlice = 2'000;
 // A list of fewer pairs could be wider, and one of more should be narrower.
-constexpr std::uint64_t kFewPairs = 96, kManyPairs = 256;
-constexpr double kWidest = 16;
+constexpr std::uint64_t kFewPairs = 96, kManyPairs = 384;
+// The most slack: in margins, or in ticks of the speed.
+constexpr double kMostMargins = 1.5, kMostTicks = 3;
+constexpr double kNarrowest = 0.3, kWidest = 16;
+// The part of its slack by which the centre of a list that is filled at once lies ahead.
+constexpr double kAhead = 0.5;
 // Beyond this a float does not hold a reach.
 constexpr double kLargestReach = 0x1p100;
 // Blocks between two looks at the clock.
@@ -85,10 +89,10 @@ bool NearCache::find(const Need& need) noexcept {
   const bool stays = kept().state == State::kKept && holds(kept(), pose, need);
   if (next().state == State::kReady && holds(next(), pose, need) &&
       (!stays || way(next().centre, pose) < way(kept().centre, pose))) {
-    kept().state = State::kEmpty;
-    kept_ = 1 - kept_;
-    kept().state = State::kKept;
-  } else if (!stays) {
+    use_next(need);
+    return true;
+  }
+  if (!stays) {
     kept().state = State::kEmpty;
     return false;
   }
@@ -116,11 +120,47 @@ bool NearCache::answer(NearDecision& decision, std::uint64_t& measured) noexcept
   return true;
 }
 
+double NearCache::slack_of(const Need& need) const noexcept {
+  const double wanted = width_ * std::max(kWantedTicks / 2 * speed_, need.enough / 8);
+  return std::min(wanted, std::max(kMostMargins * need.enough, kMostTicks * speed_));
+}
+
+// Begins a list whose centre lies so many ticks ahead.
+void NearCache::begin(const Need& need, double slack, double ticks) noexcept {
+  List& list = next();
+  list.state = State::kFilling;
+  list.used = 0;
+  list.pairs = 0;
+  list.open = {};
+  list.enough = need.enough;
+  list.reach = need.enough + slack + 4 * need.error;
+  list.centre = ahead(ticks);
+}
+
+// Begins a list that is filled at once. Returns whether it is worth its search.
+bool NearCache::begin_here(const Need& need) noexcept {
+  const double slack = slack_of(need);
+  const bool lasts = (1 + kAhead) * slack >= kFewestAtOnce * speed_;
+  if (pause_ > 0 || !lasts || !(need.enough + slack < kLargestReach)) return false;
+  begin(need, slack, drift_ > 0 ? std::min(kAhead * slack / drift_, kWantedTicks) : 0);
+  if (!holds(next(), poses_[0], need)) next().centre = poses_[0];
+  return true;
+}
+
+// Takes the next list into use.
+void NearCache::use_next(const Need& need) noexcept {
+  kept().state = State::kEmpty;
+  kept_ = 1 - kept_;
+  kept().state = State::kKept;
+  motion_ = way(kept().centre, poses_[0]);
+  error_ = need.error;
+}
+
 // Begins the next list if it is time for it, and if the list is worth it. Returns whether it did.
 bool NearCache::want(const Need& need, std::uint64_t tests) noexcept {
   if (tests > 0 && list_tests_ == 0) list_tests_ = 2 * tests;
   pause_ -= pause_ > 0 ? 1 : 0;
-  const double slack = width_ * std::max(kWantedTicks / 2 * speed_, need.enough / 8);
+  const double slack = slack_of(need);
   if (!(need.enough + slack < kLargestReach)) return false;
   const double ticks = speed_ > 0 ? 2 * slack / speed_ : HUGE_VAL;
   const bool holds_now = kept().state == State::kKept;
@@ -136,20 +176,13 @@ bool NearCache::want(const Need& need, std::uint64_t tests) noexcept {
   const bool lasts =
       holds_now && holds(kept(), ahead(slices + 2), need, slices * (speed_ - drift_));
   if (lasts || pause_ > 0 || ticks < kFewestTicks || ticks_ < 3) return false;
-  List& list = next();
-  list.state = State::kFilling;
-  list.used = 0;
-  list.pairs = 0;
-  list.open = {};
-  list.enough = need.enough;
-  list.reach = need.enough + slack + 4 * need.error;
-  list.centre = ahead(slices + (drift_ > 0 ? std::min(0.8 * slack / drift_, kWantedTicks) : 0));
+  begin(need, slack, slices + (drift_ > 0 ? std::min(0.8 * slack / drift_, kWantedTicks) : 0));
   slice_ = std::max(kLeastSlice,
                     static_cast<std::uint64_t>(1.25 * static_cast<double>(list_tests_) / slices));
   return true;
 }
 
-void NearCache::advance(const Budget& budget, FoundMemory& memory) noexcept {
+void NearCache::advance(std::uint64_t most, const Budget& budget, FoundMemory& memory) noexcept {
   List& list = next();
   if (list.state != State::kFilling) return;
   memory.clear();
@@ -164,8 +197,8 @@ void NearCache::advance(const Budget& budget, FoundMemory& memory) noexcept {
         [&] { return take(found); });
   };
   const auto work = [&] { return walk_.tests() + kPairTests * list.pairs; };
-  const std::uint64_t end = work() + slice_;
-  while (!walk_.is_whole() && work() < end && !budget.is_past()) {
+  const std::uint64_t begin = work();
+  while (!walk_.is_whole() && work() - begin < most && !budget.is_past()) {
     if (!walk_.advance(visit)) return;
   }
   if (!walk_.is_whole()) return;
@@ -177,7 +210,7 @@ void NearCache::advance(const Budget& budget, FoundMemory& memory) noexcept {
 void NearCache::set_width() noexcept {
   const std::uint64_t pairs = next().pairs;
   if (pairs < kFewPairs) width_ = std::min(width_ * 1.5, kWidest);
-  if (pairs > kManyPairs) width_ = std::max(width_ / 1.5, 1.0);
+  if (pairs > kManyPairs) width_ = std::max(width_ / 1.5, kNarrowest);
 }
 
 // Adds the pairs that were found, each with a lower bound of its distance. Returns whether there

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "ist/query/relative_pose.h"
@@ -15,10 +16,13 @@ namespace ist {
 /// Carries near pairs from one pose to the next. A list holds all pairs within a reach at its
 /// centre. While the moving body stays within the list's slack of that centre, no other pair can be
 /// near, so only the listed pairs are measured again. The next list is filled in slices, before the
-/// last one is used up, for a centre ahead of the body. No tick pays for a whole list.
+/// last one is used up, for a centre ahead of the body. A tick pays for a slice.
 ///
 ///              want            advance            find
 ///     kEmpty ---------> kFilling -------> kReady ----------> kKept
+///
+/// If a body is too fast for that, fill() makes a list at once. It costs little more than a search,
+/// and the next ticks use it.
 ///
 /// A list becomes kEmpty again if it is used up, if it has no room, or if the body went another
 /// way. The answer is that of a fresh search, bit by bit.
@@ -50,7 +54,25 @@ class NearCache {
       const ClusterPose pose = pose_of(to_isometry(next().centre));
       walk_.begin(pose, rounded_up(next().reach + double{pose.error}));
     }
-    advance(budget, memory);
+    advance(slice_, budget, memory);
+  }
+  /// Fills a list at once, after find() found none. Returns whether it has all pairs of the pose:
+  /// not if the list would be used up soon, has no room, or the deadline came. `tests` counts its
+  /// tests.
+  template <class PoseOf>
+  [[nodiscard]] bool fill(const Need& need, const Budget& budget, FoundMemory& memory,
+                          std::uint64_t& tests, PoseOf pose_of) noexcept {
+    if (!begin_here(need)) return false;
+    const ClusterPose pose = pose_of(to_isometry(next().centre));
+    walk_.begin(pose, rounded_up(next().reach + double{pose.error}));
+    advance(std::numeric_limits<std::uint64_t>::max(), budget, memory);
+    tests += walk_.tests();
+    if (next().state != State::kReady) {
+      next().state = State::kEmpty;
+      return false;
+    }
+    use_next(need);
+    return true;
   }
   void forget() noexcept;
 
@@ -92,7 +114,11 @@ class NearCache {
                            double spare = 0) const noexcept;
   [[nodiscard]] RelativePose ahead(double ticks) const noexcept;
   [[nodiscard]] bool want(const Need& need, std::uint64_t tests) noexcept;
-  void advance(const Budget& budget, FoundMemory& memory) noexcept;
+  [[nodiscard]] double slack_of(const Need& need) const noexcept;
+  void begin(const Need& need, double slack, double ticks) noexcept;
+  [[nodiscard]] bool begin_here(const Need& need) noexcept;
+  void use_next(const Need& need) noexcept;
+  void advance(std::uint64_t most, const Budget& budget, FoundMemory& memory) noexcept;
   [[nodiscard]] bool take(FoundTriangles& found) noexcept;
   [[nodiscard]] bool add(TriangleIds ids, double distance) noexcept;
   void set_width() noexcept;

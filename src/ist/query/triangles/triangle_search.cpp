@@ -372,19 +372,21 @@ TriangleSearch::Near TriangleSearch::near(const TrianglePose& pose, double enoug
   search_.begin(cluster_pose(pose));
   NearDecision decision({search_.step(), kernels_, meshes, memory_, budget}, *moving_->triangles(),
                         plain_move(pose.rigid), enough, list);
-  if (carries && near_->find(need)) {
-    std::uint64_t tests = 0;
+  std::uint64_t tests = 0;
+  const bool kept = carries && near_->find(need);
+  if (kept || (carries && near_->fill(need, budget, memory_, tests,
+                                      [&](const auto& centre) { return cluster_pose(centre); }))) {
     const bool complete = near_->answer(decision, tests);
     list.finish();
     if (!budget.is_past()) prepare_near(need, 0, budget);
-    return {{complete, tests}, true};
+    return {{complete, tests}, kept};
   }
   NearbyPairs near(decision);
   BudgetMeter meter(budget, kRootTests);
   bool complete = search_.run(meter, near);
   complete = near.finish() && complete;
   list.finish();
-  const std::uint64_t tests = meter.spent() - kRootTests;
+  tests += meter.spent() - kRootTests;
   if (carries && complete && !budget.is_past()) prepare_near(need, tests, budget);
   return {{complete, tests}, false};
 }
