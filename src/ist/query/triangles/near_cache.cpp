@@ -18,18 +18,22 @@ constexpr double kFewestTicks = 6;
 constexpr double kWantedTicks = 14;
 // A list is filled in so many ticks, if the last list lasts as long.
 constexpr double kFewestSlices = 5, kMostSlices = 32;
-// The fewest tests of a slice, 8 µs.
-constexpr std::uint64_t kLeastSlice = 2'000;
+// The fewest tests of a slice, 6 µs.
+constexpr double kLeastSlice = 2'000;
+// With its slice a tick costs at most so many times a fresh search: if a list answers, and if none
+// does.
+constexpr double kMostByList = 1.1, kMostBySearch = 1.15;
 // A list of fewer pairs could be wider, and one of more should be narrower.
 constexpr std::uint64_t kFewPairs = 96, kManyPairs = 256;
-constexpr double kWidest = 16;
+constexpr double kNarrowest = kFewestTicks / kWantedTicks, kWidest = 16;
 // Beyond this a float does not hold a reach.
 constexpr double kLargestReach = 0x1p100;
 // Blocks between two looks at the clock.
 constexpr std::size_t kUnwatchedBlocks = 256;
-// Ticks without a list after one that had no room.
-constexpr std::uint64_t kPause = 64;
-// The tests that take as long as a pair of the list.
+// Ticks without a list after one that had no room, or after a chain of lists that answered in fewer
+// ticks. Each further such chain makes the pause four times as long.
+constexpr std::uint64_t kPause = 64, kLongestPause = 4096;
+// The tests that take as long as to list a pair.
 constexpr std::uint64_t kPairTests = 48;
 
 }  // namespace
@@ -89,26 +93,37 @@ bool NearCache::find(const Need& need) noexcept {
     kept_ = 1 - kept_;
     kept().state = State::kKept;
   } else if (!stays) {
+    const bool ends = kept().state == State::kKept && next().state == State::kEmpty;
     kept().state = State::kEmpty;
+    if (ends) end_chain();
     return false;
   }
   motion_ = way(kept().centre, pose);
   error_ = need.error;
-  return true;
+  spent_ = kMeasuredTests * within(need.enough);
+  return spent_ <= fresh_;
+}
+
+std::uint64_t NearCache::within(double enough) noexcept {
+  const List& list = kept();
+  std::uint64_t pairs = 0;
+  for (std::size_t k = 0; k < list.used; ++k) {
+    const Block& block = list.blocks[k];
+    if (!is_far(block, enough)) pairs += block.count;
+  }
+  return pairs;
 }
 
 bool NearCache::answer(NearDecision& decision, std::uint64_t& measured) noexcept {
   const List& list = kept();
-  // The distance of a pair is less than at the centre by no more than this.
-  const double nearer = motion_ + 4 * error_;
   for (std::size_t k = 0; k < list.used; ++k) {
     const Block& block = list.blocks[k];
-    const bool far = block.least - nearer > decision.enough();
+    const bool far = is_far(block, decision.enough());
     if ((!far || k % kUnwatchedBlocks == 0) && decision.context().budget.is_past()) return false;
     if (far) continue;
     std::uint32_t apart = 0;
     for (std::size_t lane = 0; lane < block.count; ++lane) {
-      if (block.distance[lane] > nearer) apart |= std::uint32_t{1} << lane;
+      if (block.distance[lane] > nearer()) apart |= std::uint32_t{1} << lane;
     }
     decision.take(block.corners, {block.ids, block.count}, apart);
     measured += block.count;
@@ -116,22 +131,42 @@ bool NearCache::answer(NearDecision& decision, std::uint64_t& measured) noexcept
   return true;
 }
 
-// Begins the next list if it is time for it, and if the list is worth it. Returns whether it did.
-bool NearCache::want(const Need& need, std::uint64_t tests) noexcept {
-  if (tests > 0 && list_tests_ == 0) list_tests_ = 2 * tests;
+// Notes that a chain of lists ends, each of which was ready in time.
+void NearCache::end_chain() noexcept {
+  const bool paid = std::exchange(by_list_, 0) >= kPause;
+  pause_ = paid ? 0 : std::clamp(4 * last_pause_, kPause, kLongestPause);
+  last_pause_ = pause_;
+}
+
+// Notes what this tick cost without its slice.
+void NearCache::note(const std::optional<std::uint64_t>& tests) noexcept {
+  if (tests) {
+    spent_ = fresh_ = *tests;
+    if (list_tests_ == 0) list_tests_ = fresh_ + fresh_ / 4;
+  } else {
+    ++by_list_;
+  }
   pause_ -= pause_ > 0 ? 1 : 0;
+}
+
+// Begins the next list if it is time for it, and if the list is worth it. Returns whether it did.
+bool NearCache::want(const Need& need) noexcept {
   const double slack = width_ * std::max(kWantedTicks / 2 * speed_, need.enough / 8);
   if (!(need.enough + slack < kLargestReach)) return false;
   const double ticks = speed_ > 0 ? 2 * slack / speed_ : HUGE_VAL;
   const bool holds_now = kept().state == State::kKept;
   const double spare = holds_now ? kept().reach - need.enough - way(kept().centre, poses_[0]) : 0;
   const double left = !holds_now ? kFewestSlices : speed_ > 0 ? spare / speed_ - 1 : HUGE_VAL;
-  const double slices = std::clamp(std::min(ticks / 3, left), kFewestSlices, kMostSlices);
+  const double work = 1.25 * static_cast<double>(list_tests_);
+  const double fewest =
+      holds_now ? kFewestSlices : std::clamp(work / allowed(), kFewestSlices, kMostSlices);
+  const double slices = std::clamp(std::min(ticks / 3, left), fewest, kMostSlices);
   if (next().state != State::kEmpty) {
     // It is dropped if the body does not come to it.
-    const double until = next().state == State::kReady ? 2 : slices;
-    if (holds(next(), ahead(until), need) || holds(next(), poses_[0], need)) return false;
+    until_ = std::max(until_ - 1, 2.0);
+    if (holds(next(), ahead(until_), need) || holds(next(), poses_[0], need)) return false;
     next().state = State::kEmpty;
+    if (!holds_now) end_chain();
   }
   const bool lasts =
       holds_now && holds(kept(), ahead(slices + 2), need, slices * (speed_ - drift_));
@@ -144,9 +179,21 @@ bool NearCache::want(const Need& need, std::uint64_t tests) noexcept {
   list.enough = need.enough;
   list.reach = need.enough + slack + 4 * need.error;
   list.centre = ahead(slices + (drift_ > 0 ? std::min(0.8 * slack / drift_, kWantedTicks) : 0));
-  slice_ = std::max(kLeastSlice,
-                    static_cast<std::uint64_t>(1.25 * static_cast<double>(list_tests_) / slices));
+  slice_ = std::max(kLeastSlice, work / slices);
+  until_ = slices;
   return true;
+}
+
+// Returns the work of the slices so far, as tests.
+std::uint64_t NearCache::done() const noexcept {
+  return walk_.tests() + kPairTests * lists_[1 - kept_].pairs;
+}
+
+// Returns the tests of a slice that keep this tick about as cheap as a fresh search.
+double NearCache::allowed() const noexcept {
+  const bool holds_now = lists_[kept_].state == State::kKept;
+  const double most = (holds_now ? kMostByList : kMostBySearch) * static_cast<double>(fresh_);
+  return std::max(kLeastSlice, most - static_cast<double>(std::min(spent_, fresh_)));
 }
 
 void NearCache::advance(const Budget& budget, FoundMemory& memory) noexcept {
@@ -163,21 +210,29 @@ void NearCache::advance(const Budget& budget, FoundMemory& memory) noexcept {
         },
         [&] { return take(found); });
   };
-  const auto work = [&] { return walk_.tests() + kPairTests * list.pairs; };
-  const std::uint64_t end = work() + slice_;
-  while (!walk_.is_whole() && work() < end && !budget.is_past()) {
+  const std::uint64_t end = done() + static_cast<std::uint64_t>(std::min(slice_, allowed()));
+  while (!walk_.is_whole() && done() < end && !budget.is_past()) {
     if (!walk_.advance(visit)) return;
   }
   if (!walk_.is_whole()) return;
   list.state = State::kReady;
-  list_tests_ = work();
+  list_tests_ = done();
+  fresh_ = std::min(fresh_, list_tests_);  // which has a smaller reach
   set_width();
 }
 
+// A list of so many pairs that they cost more than a search may last less than kWantedTicks.
 void NearCache::set_width() noexcept {
-  const std::uint64_t pairs = next().pairs;
-  if (pairs < kFewPairs) width_ = std::min(width_ * 1.5, kWidest);
-  if (pairs > kManyPairs) width_ = std::max(width_ / 1.5, 1.0);
+  const std::uint64_t pairs = next().pairs, tests = kMeasuredTests * pairs;
+  if (pairs < kFewPairs) {
+    width_ = std::min(width_ * 1.5, kWidest);
+  } else if (tests > fresh_) {
+    width_ = std::max(width_ / 1.5, kNarrowest);
+  } else if (pairs > kManyPairs && width_ > 1) {
+    width_ = std::max(width_ / 1.5, 1.0);
+  } else if (3 * tests < fresh_ && width_ < 1) {
+    width_ = std::min(width_ * 1.5, 1.0);
+  }
 }
 
 // Adds the pairs that were found, each with a lower bound of its distance. Returns whether there
@@ -188,7 +243,7 @@ bool NearCache::take(FoundTriangles& found) noexcept {
     if (add(found.open[k], std::sqrt(double{found.squares[k]}))) continue;
     next().state = State::kEmpty;
     pause_ = kPause;
-    width_ = 1;
+    width_ = std::max(width_ / 2, kNarrowest);
     return false;
   }
   return true;
@@ -226,7 +281,8 @@ void NearCache::forget() noexcept {
   for (List& list : lists_) list.state = State::kEmpty;
   ticks_ = 0;
   width_ = 1;
-  list_tests_ = pause_ = 0;
+  list_tests_ = fresh_ = spent_ = 0;
+  by_list_ = pause_ = last_pause_ = 0;
 }
 
 }  // namespace ist

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "ist/query/relative_pose.h"
@@ -36,17 +37,22 @@ class NearCache {
     double error;   ///< of a distance in double
   };
 
-  /// Begins a tick. Returns whether a list holds all pairs of the pose.
+  /// Begins a tick. Returns whether a list holds all pairs of the pose, and measuring them costs no
+  /// more than a fresh search.
   [[nodiscard]] bool find(const Need& need) noexcept;
   /// Measures the pairs of the list that find() found. Returns false if the deadline came before
   /// the end. `measured` counts the pairs.
   bool answer(NearDecision& decision, std::uint64_t& measured) noexcept;
+  /// The tests that take as long as to measure a pair.
+  static constexpr std::uint64_t kMeasuredTests = 32;
   /// Ends a tick: goes on with the next list. `pose_of(centre)` returns a ClusterPose. `tests`
-  /// counts those of this tick's own search, 0 if a list answered.
+  /// counts those of this tick's own search, and kMeasuredTests for each pair that it found; empty
+  /// if a list answered.
   template <class PoseOf>
-  void prepare(const Need& need, std::uint64_t tests, const Budget& budget, FoundMemory& memory,
-               PoseOf pose_of) noexcept {
-    if (want(need, tests)) {
+  void prepare(const Need& need, const std::optional<std::uint64_t>& tests, const Budget& budget,
+               FoundMemory& memory, PoseOf pose_of) noexcept {
+    note(tests);
+    if (want(need)) {
       const ClusterPose pose = pose_of(to_isometry(next().centre));
       walk_.begin(pose, rounded_up(next().reach + double{pose.error}));
     }
@@ -91,7 +97,19 @@ class NearCache {
   [[nodiscard]] bool holds(const List& list, const RelativePose& pose, const Need& need,
                            double spare = 0) const noexcept;
   [[nodiscard]] RelativePose ahead(double ticks) const noexcept;
-  [[nodiscard]] bool want(const Need& need, std::uint64_t tests) noexcept;
+  // Returns whether all pairs of a block are farther apart now than `enough`. The distance of a
+  // pair is less than at the centre by no more than the motion.
+  [[nodiscard]] bool is_far(const Block& block, double enough) const noexcept {
+    return block.least - nearer() > enough;
+  }
+  [[nodiscard]] double nearer() const noexcept { return motion_ + 4 * error_; }
+  // Returns the pairs of the kept list that may be within a distance.
+  [[nodiscard]] std::uint64_t within(double enough) noexcept;
+  void end_chain() noexcept;
+  void note(const std::optional<std::uint64_t>& tests) noexcept;
+  [[nodiscard]] bool want(const Need& need) noexcept;
+  [[nodiscard]] std::uint64_t done() const noexcept;
+  [[nodiscard]] double allowed() const noexcept;
   void advance(const Budget& budget, FoundMemory& memory) noexcept;
   [[nodiscard]] bool take(FoundTriangles& found) noexcept;
   [[nodiscard]] bool add(TriangleIds ids, double distance) noexcept;
@@ -111,7 +129,13 @@ class NearCache {
   double motion_ = 0, error_ = 0;  // since the centre of the list that find() found
   double width_ = 1;              // of the next list: a factor of the slack that the speed asks for
   std::uint64_t list_tests_ = 0;  // of the last list
-  std::uint64_t slice_ = 0, pause_ = 0;
+  double slice_ = 0;              // tests
+  double until_ = 0;              // ticks from now to the tick that the next list is made for
+  // Tests, and what takes as long: about those of a fresh search, and of this tick without its
+  // slice.
+  std::uint64_t fresh_ = 0, spent_ = 0;
+  // Ticks: by the lists of this chain, from now to the next chain, and between the last two.
+  std::uint64_t by_list_ = 0, pause_ = 0, last_pause_ = 0;
 };
 
 }  // namespace ist

@@ -376,7 +376,7 @@ TriangleSearch::Near TriangleSearch::near(const TrianglePose& pose, double enoug
     std::uint64_t tests = 0;
     const bool complete = near_->answer(decision, tests);
     list.finish();
-    if (!budget.is_past()) prepare_near(need, 0, budget);
+    if (!budget.is_past()) prepare_near(need, {}, budget);
     return {{complete, tests}, true};
   }
   NearbyPairs near(decision);
@@ -385,11 +385,14 @@ TriangleSearch::Near TriangleSearch::near(const TrianglePose& pose, double enoug
   complete = near.finish() && complete;
   list.finish();
   const std::uint64_t tests = meter.spent() - kRootTests;
-  if (carries && complete && !budget.is_past()) prepare_near(need, tests, budget);
+  if (carries && complete && !budget.is_past()) {
+    prepare_near(need, tests + NearCache::kMeasuredTests * list.count(), budget);
+  }
   return {{complete, tests}, false};
 }
 
-void TriangleSearch::prepare_near(const NearCache::Need& need, std::uint64_t tests,
+void TriangleSearch::prepare_near(const NearCache::Need& need,
+                                  const std::optional<std::uint64_t>& tests,
                                   const Budget& budget) noexcept {
   near_->prepare(need, tests, budget, memory_,
                  [&](const Eigen::Isometry3d& centre) { return cluster_pose(centre); });

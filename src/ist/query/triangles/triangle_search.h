@@ -138,7 +138,7 @@ class TriangleSearch {
   [[nodiscard]] ClusterPose cluster_pose(const Eigen::Isometry3d& rigid) const noexcept;
   [[nodiscard]] static bool still_meet(const std::optional<TriangleIds>& witness,
                                        const Meshes& meshes, const Budget& budget) noexcept;
-  void prepare_near(const NearCache::Need& need, std::uint64_t tests,
+  void prepare_near(const NearCache::Need& need, const std::optional<std::uint64_t>& tests,
                     const Budget& budget) noexcept;
   template <class Visitor>
   void begin_nearest(BudgetMeter& meter, Visitor& nearest) noexcept;
