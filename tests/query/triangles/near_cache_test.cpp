@@ -99,7 +99,7 @@ TEST(NearCache, KeepsItsListsWhereABodyMovesSlowly) {
   const SphereTree ball = triangle_tree(icosphere(4, 1), 8);
   NearCacheRun run(ball, ball, {.near_pairs = 4096});
   for (int tick = 0; tick < 600 && !HasFatalFailure(); ++tick) {
-    const double angle = 0.002 * (tick < 300 ? tick : 600 - tick);  // there and back
+    const double angle = 0.0004 * (tick < 300 ? tick : 600 - tick);  // there and back
     run.check(pose_of(Eigen::AngleAxisd(angle, Eigen::Vector3d(0.6, 0, 0.8)).toRotationMatrix(),
                       2.003 * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0)),
               0.02);
@@ -111,6 +111,36 @@ TEST(NearCache, KeepsItsListsWhereABodyMovesSlowly) {
   run.carried().forget();
   EXPECT_EQ(run.carried().near_pairs(pose, 0.02, out).found, Found::kFresh);
   EXPECT_GT(run.pairs, run.ticks);
+}
+
+// Two balls slide past each other, at several speeds. A list does not answer if it is too wide:
+// what it measures again costs at most 1.1 times a search. A pair of a list costs some 24 tests,
+// and a pair that a search finds 48.
+TEST(NearCache, MeasuresNoMoreThanASearchCosts) {
+  const SphereTree ball = triangle_tree(icosphere(4, 1), 8);
+  std::size_t kept = 0, searched = 0;
+  for (const double speed : {0.0001, 0.0003, 0.0005, 0.001, 0.003}) {
+    SCOPED_TRACE(speed);
+    Query query(ball, ball, {.near_pairs = 1 << 14});
+    std::vector<NearPair> out(1 << 14);
+    std::uint64_t search = 0;
+    for (int tick = 0; tick < 200; ++tick) {
+      const double angle = speed * tick;
+      const Eigen::Isometry3d pose =
+          shift(2.002 * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0));
+      const NearPairsResult result = query.near_pairs(pose, 0.01, out);
+      ASSERT_TRUE(result.complete);
+      if (result.found == Found::kKept) {
+        EXPECT_LE(24 * result.sphere_tests, search + search / 10);
+        ++kept;
+      } else {
+        search = std::max(search, result.sphere_tests + 48 * result.near_pairs);
+        ++searched;
+      }
+    }
+  }
+  EXPECT_GT(kept, 200u);
+  EXPECT_GT(searched, 200u);
 }
 
 // A list without room, a body that is too fast, a deadline and a budget: each answers nevertheless.

@@ -30,11 +30,13 @@ constexpr double kNarrowest = kFewestTicks / kWantedTicks, kWidest = 16;
 constexpr double kLargestReach = 0x1p100;
 // Blocks between two looks at the clock.
 constexpr std::size_t kUnwatchedBlocks = 256;
-// Ticks without a list after one that had no room, or after a chain of lists that answered in fewer
-// ticks. Each further such chain makes the pause four times as long.
+// Ticks without a list after one that had no room, or after a chain of lists that cost more than it
+// saved. Each further such chain makes the pause four times as long. It ends early for a list whose
+// slack is less by this factor.
 constexpr std::uint64_t kPause = 64, kLongestPause = 4096;
-// The tests that take as long as to list a pair.
-constexpr std::uint64_t kPairTests = 48;
+constexpr double kLessSlack = 1.5;
+// The tests that take as long as to measure a pair of a list again.
+constexpr std::uint64_t kMeasuredTests = 24;
 
 }  // namespace
 
@@ -86,22 +88,22 @@ bool NearCache::find(const Need& need) noexcept {
   for (std::size_t k = 0; k < back; ++k) speed_ = std::max(speed_, way(poses_[k], poses_[k + 1]));
   drift_ = back > 0 ? way(poses_[0], poses_[back]) / static_cast<double>(back) : 0;
 
-  const bool stays = kept().state == State::kKept && holds(kept(), pose, need);
+  const bool has = kept().state == State::kKept, stays = has && holds(kept(), pose, need);
   if (next().state == State::kReady && holds(next(), pose, need) &&
       (!stays || way(next().centre, pose) < way(kept().centre, pose))) {
     kept().state = State::kEmpty;
     kept_ = 1 - kept_;
     kept().state = State::kKept;
+    if (has && saved_ < -static_cast<double>(list_tests_)) end_chain();
   } else if (!stays) {
-    const bool ends = kept().state == State::kKept && next().state == State::kEmpty;
     kept().state = State::kEmpty;
-    if (ends) end_chain();
-    return false;
+    if (has && next().state == State::kEmpty) end_chain();
   }
+  if (kept().state == State::kEmpty) return false;
   motion_ = way(kept().centre, pose);
   error_ = need.error;
   spent_ = kMeasuredTests * within(need.enough);
-  return spent_ <= fresh_;
+  return static_cast<double>(spent_) <= kMostByList * static_cast<double>(fresh_);
 }
 
 std::uint64_t NearCache::within(double enough) noexcept {
@@ -131,9 +133,10 @@ bool NearCache::answer(NearDecision& decision, std::uint64_t& measured) noexcept
   return true;
 }
 
-// Notes that a chain of lists ends, each of which was ready in time.
+// Ends a chain of lists, each of which was ready in time.
 void NearCache::end_chain() noexcept {
-  const bool paid = std::exchange(by_list_, 0) >= kPause;
+  const bool paid = std::exchange(saved_, 0) > 0;
+  for (List& list : lists_) list.state = State::kEmpty;
   pause_ = paid ? 0 : std::clamp(4 * last_pause_, kPause, kLongestPause);
   last_pause_ = pause_;
 }
@@ -144,7 +147,7 @@ void NearCache::note(const std::optional<std::uint64_t>& tests) noexcept {
     spent_ = fresh_ = *tests;
     if (list_tests_ == 0) list_tests_ = fresh_ + fresh_ / 4;
   } else {
-    ++by_list_;
+    saved_ += static_cast<double>(fresh_) - static_cast<double>(spent_);
   }
   pause_ -= pause_ > 0 ? 1 : 0;
 }
@@ -170,7 +173,8 @@ bool NearCache::want(const Need& need) noexcept {
   }
   const bool lasts =
       holds_now && holds(kept(), ahead(slices + 2), need, slices * (speed_ - drift_));
-  if (lasts || pause_ > 0 || ticks < kFewestTicks || ticks_ < 3) return false;
+  const bool pauses = pause_ > 0 && kLessSlack * slack > slack_;
+  if (lasts || pauses || ticks < kFewestTicks || ticks_ < 3) return false;
   List& list = next();
   list.state = State::kFilling;
   list.used = 0;
@@ -181,6 +185,7 @@ bool NearCache::want(const Need& need) noexcept {
   list.centre = ahead(slices + (drift_ > 0 ? std::min(0.8 * slack / drift_, kWantedTicks) : 0));
   slice_ = std::max(kLeastSlice, work / slices);
   until_ = slices;
+  slack_ = slack;
   return true;
 }
 
@@ -210,10 +215,12 @@ void NearCache::advance(const Budget& budget, FoundMemory& memory) noexcept {
         },
         [&] { return take(found); });
   };
-  const std::uint64_t end = done() + static_cast<std::uint64_t>(std::min(slice_, allowed()));
+  const std::uint64_t begin = done();
+  const std::uint64_t end = begin + static_cast<std::uint64_t>(std::min(slice_, allowed()));
   while (!walk_.is_whole() && done() < end && !budget.is_past()) {
     if (!walk_.advance(visit)) return;
   }
+  saved_ -= static_cast<double>(done() - begin);
   if (!walk_.is_whole()) return;
   list.state = State::kReady;
   list_tests_ = done();
@@ -282,7 +289,8 @@ void NearCache::forget() noexcept {
   ticks_ = 0;
   width_ = 1;
   list_tests_ = fresh_ = spent_ = 0;
-  by_list_ = pause_ = last_pause_ = 0;
+  pause_ = last_pause_ = 0;
+  saved_ = 0;
 }
 
 }  // namespace ist

@@ -43,10 +43,10 @@ class NearCache {
   /// Measures the pairs of the list that find() found. Returns false if the deadline came before
   /// the end. `measured` counts the pairs.
   bool answer(NearDecision& decision, std::uint64_t& measured) noexcept;
-  /// The tests that take as long as to measure a pair.
-  static constexpr std::uint64_t kMeasuredTests = 32;
+  /// The tests that take as long as to find a pair and to measure it, or to list it.
+  static constexpr std::uint64_t kPairTests = 48;
   /// Ends a tick: goes on with the next list. `pose_of(centre)` returns a ClusterPose. `tests`
-  /// counts those of this tick's own search, and kMeasuredTests for each pair that it found; empty
+  /// counts those of this tick's own search, and kPairTests for each pair that it found; empty
   /// if a list answered.
   template <class PoseOf>
   void prepare(const Need& need, const std::optional<std::uint64_t>& tests, const Budget& budget,
@@ -130,12 +130,13 @@ class NearCache {
   double width_ = 1;              // of the next list: a factor of the slack that the speed asks for
   std::uint64_t list_tests_ = 0;  // of the last list
   double slice_ = 0;              // tests
+  double slack_ = 0;              // of the last list that was begun
   double until_ = 0;              // ticks from now to the tick that the next list is made for
   // Tests, and what takes as long: about those of a fresh search, and of this tick without its
   // slice.
   std::uint64_t fresh_ = 0, spent_ = 0;
-  // Ticks: by the lists of this chain, from now to the next chain, and between the last two.
-  std::uint64_t by_list_ = 0, pause_ = 0, last_pause_ = 0;
+  double saved_ = 0;  // of this chain of lists, against fresh searches; what takes as long as tests
+  std::uint64_t pause_ = 0, last_pause_ = 0;  // ticks to the next chain, and between the last two
 };
 
 }  // namespace ist

@@ -386,7 +386,7 @@ TriangleSearch::Near TriangleSearch::near(const TrianglePose& pose, double enoug
   list.finish();
   const std::uint64_t tests = meter.spent() - kRootTests;
   if (carries && complete && !budget.is_past()) {
-    prepare_near(need, tests + NearCache::kMeasuredTests * list.count(), budget);
+    prepare_near(need, tests + NearCache::kPairTests * list.count(), budget);
   }
   return {{complete, tests}, false};
 }
