@@ -55,7 +55,8 @@ struct QueryOptions {
   /// The most near pairs to keep from one pose to the next, 336 bytes each, and the memory of one
   /// more search of triangles. 0: none are kept, and every near_pairs() searches.
   ///
-  /// For a body that moves by less than some half of the margin from query to query. The answers
+  /// For a body that moves by less than some half of the margin from query to query. If that costs
+  /// more than a search, the query searches. The answers
   /// are the same, bit by bit, but for `sphere_tests` and `found`. With a budget of tests every
   /// query searches. Twice the pairs that are near is room enough, and 2,048 is a good number.
   std::size_t near_pairs = 0;
