@@ -46,11 +46,28 @@ Answer ask(Peer& peer, Question question, const Eigen::Isometry3d& pose) {
   return answer;
 }
 
+// The same, with the nearest points.
+Answer ask_all(Peer& peer, Question question, const Eigen::Isometry3d& pose) {
+  Answer answer = ask(peer, question, pose);
+  if (question != Question::kDistance) return answer;
+  if (const auto points = peer.nearest()) answer.apart = ((*points)[0] - (*points)[1]).norm();
+  return answer;
+}
+
+// Points of two surfaces are no nearer than the surfaces are. A contestant's own are within its
+// interval too.
+bool points_agree(const Answer& ist, const Answer& peer) {
+  if (!peer.apart || peer.gap.upper == 0) return true;
+  return *peer.apart >= ist.gap.lower - kRounding && *peer.apart >= peer.gap.lower - kRounding &&
+         *peer.apart <= peer.gap.upper + kRounding;
+}
+
 }  // namespace
 
 bool agree(Question question, const Answer& ist, const Answer& peer, Guarantee guarantee) {
   if (question == Question::kCandidates) return peer.pairs >= ist.pairs;
   const double slack = guarantee == Guarantee::kSampled ? voxel_size() : kRounding;
+  if (!points_agree(ist, peer)) return false;
   return ist.meets == peer.meets && ist.pairs == peer.pairs &&
          ist.gap.lower <= peer.gap.upper + slack && peer.gap.lower <= ist.gap.upper + slack;
 }
@@ -87,7 +104,7 @@ void Contest::hold(double seconds, int fewest) {
     player.latencies.resize(poses_.size());
     for (const NamedPose& pose : poses_) {
       player.peer.prepare(pose.pose);
-      player.answers.push_back(ask(player.peer, question_, pose.pose));
+      player.answers.push_back(ask_all(player.peer, question_, pose.pose));
     }
   }
   const auto rank = [&](const Player& player) {

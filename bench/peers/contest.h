@@ -15,10 +15,12 @@ struct Answer {
   bool meets = false;
   std::uint64_t pairs = 0;
   DistanceInterval gap{};
+  std::optional<double> apart{};  ///< how far the nearest points are apart, if they are given
 };
 
 /// Whether a contestant's answer is as IST's: no fewer candidates; distances that may be the same;
-/// for one who samples, distances within a voxel.
+/// for one who samples, distances within a voxel. Nearest points are as far apart as the surfaces,
+/// to within the peer's interval, if the surfaces are apart.
 [[nodiscard]] bool agree(Question question, const Answer& ist, const Answer& peer,
                          Guarantee guarantee);
 

@@ -1,3 +1,4 @@
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/config.h>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
@@ -44,8 +45,12 @@ class FclPeer : public Peer {
     fcl::DistanceResult<double> result;
     fcl::distance<double>(fixed_.get(), fcl::Transform3d::Identity(), moving_.get(), pose,
                           fcl::DistanceRequest<double>(kWithPoints), result);
+    points_ = {result.nearest_points[0], result.nearest_points[1]};
     const double found = std::max(result.min_distance, 0.0);
     return {found, found};
+  }
+  [[nodiscard]] std::optional<std::array<Eigen::Vector3d, 2>> nearest() const override {
+    return points_;
   }
 
  private:
@@ -57,6 +62,7 @@ class FclPeer : public Peer {
 
   std::shared_ptr<const Model> fixed_, moving_;
   fcl::CollisionResult<double> found_;
+  std::array<Eigen::Vector3d, 2> points_{};
 };
 
 // FCL's own rule ends where a bound is within the absolute error and within the relative one, which
@@ -84,12 +90,65 @@ class FclWithinPeer final : public Peer {
     fcl::detail::initialize<double>(node, *fixed_, fcl::Transform3d::Identity(), *moving_, pose,
                                     fcl::DistanceRequest<double>(kWithPoints), result);
     fcl::detail::distance<double>(&node);
+    points_ = {result.nearest_points[0], result.nearest_points[1]};
     const double found = std::max(result.min_distance, 0.0);
     return {std::max(found - kTolerance, 0.0), found};
+  }
+  [[nodiscard]] std::optional<std::array<Eigen::Vector3d, 2>> nearest() const override {
+    return points_;  // in the frame of the fixed mesh
   }
 
  private:
   std::shared_ptr<const Model> fixed_, moving_;
+  std::array<Eigen::Vector3d, 2> points_{};
+};
+
+// DynamicAABBTreeCollisionManager over objects that share one model.
+class FclCrowd final : public Crowd {
+ public:
+  explicit FclCrowd(const TriangleMesh& mesh)
+      : model_(std::const_pointer_cast<Model>(model_of(mesh))) {}
+
+  void set_up(std::span<const Eigen::Vector3d> places) override {
+    manager_.reset();
+    objects_.clear();
+    manager_.emplace();
+    std::vector<fcl::CollisionObject<double>*> all;
+    for (const Eigen::Vector3d& place : places) {
+      objects_.push_back(std::make_unique<fcl::CollisionObject<double>>(
+          model_, fcl::Transform3d(Eigen::Translation3d(place))));
+      all.push_back(objects_.back().get());
+    }
+    manager_->registerObjects(all);
+    manager_->setup();
+  }
+  void move(std::span<const Eigen::Vector3d> places) override {
+    for (std::size_t k = 0; k < objects_.size(); ++k) {
+      objects_[k]->setTranslation(places[k]);
+      objects_[k]->computeAABB();
+    }
+    manager_->update();
+  }
+  std::uint64_t touching() override {
+    std::uint64_t count = 0;
+    manager_->collide(&count, &count_touching);
+    return count;
+  }
+
+ private:
+  // Returns false to go on.
+  static bool count_touching(fcl::CollisionObject<double>* a, fcl::CollisionObject<double>* b,
+                             void* count) {
+    fcl::CollisionResult<double> found;
+    if (fcl::collide<double>(a, b, fcl::CollisionRequest<double>(1, false), found) > 0) {
+      ++*static_cast<std::uint64_t*>(count);
+    }
+    return false;
+  }
+
+  std::shared_ptr<Model> model_;
+  std::vector<std::unique_ptr<fcl::CollisionObject<double>>> objects_;
+  std::optional<fcl::DynamicAABBTreeCollisionManager<double>> manager_;
 };
 
 Peers make_peers(const TriangleMesh& fixed, const TriangleMesh& moving) {
@@ -102,6 +161,10 @@ Peers make_peers(const TriangleMesh& fixed, const TriangleMesh& moving) {
 
 }  // namespace
 
-Library fcl_library() { return {"fcl", FCL_VERSION, make_peers}; }
+Library fcl_library() {
+  return {"fcl", FCL_VERSION, make_peers, {}, [](const TriangleMesh& mesh) {
+            return std::make_unique<FclCrowd>(mesh);
+          }};
+}
 
 }  // namespace ist::bench

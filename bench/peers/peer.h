@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -60,6 +62,9 @@ class Peer {
   virtual std::uint64_t pairs(const Eigen::Isometry3d&) { return 0; }
   virtual std::uint64_t candidates(const Eigen::Isometry3d&) { return 0; }
   virtual DistanceInterval distance(const Eigen::Isometry3d&) { return {}; }
+  /// The nearest points of the last distance(), of the fixed and of the moving mesh, in fixed
+  /// coordinates; empty if a contestant gives none. Called outside of its time.
+  [[nodiscard]] virtual std::optional<std::array<Eigen::Vector3d, 2>> nearest() const { return {}; }
 
  private:
   std::string name_;
@@ -67,6 +72,23 @@ class Peer {
 };
 
 using Peers = std::vector<std::unique_ptr<Peer>>;
+
+/// Copies of one body, which share its structure. All work is done in one thread.
+class Crowd {
+ public:
+  Crowd() = default;
+  Crowd(const Crowd&) = delete;
+  Crowd& operator=(const Crowd&) = delete;
+  virtual ~Crowd() = default;
+
+  /// Sets up a world of copies that are moved to `places`, ready to be asked. The world of an
+  /// earlier call is gone.
+  virtual void set_up(std::span<const Eigen::Vector3d> places) = 0;
+  /// Moves all copies. As many as before.
+  virtual void move(std::span<const Eigen::Vector3d> places) = 0;
+  /// Returns how many pairs of copies intersect.
+  virtual std::uint64_t touching() = 0;
+};
 
 /// A library, and its contestants of a fixed and a moving mesh, which share what is built of these
 /// and may refer to them.
@@ -77,6 +99,8 @@ struct Library {
   std::string name, version;
   std::function<Peers(const TriangleMesh& fixed, const TriangleMesh& moving)> make;
   std::function<MeasurePoints(const TriangleMesh& mesh)> points = {};  ///< if it has such an answer
+  /// Makes a crowd of a mesh without copies yet; if it has worlds of many bodies.
+  std::function<std::unique_ptr<Crowd>(const TriangleMesh& mesh)> crowd = {};
 };
 
 }  // namespace ist::bench

@@ -6,6 +6,7 @@
 //   turned/QUESTION/CONTESTANT/POSE    the same poses, with both meshes in turned frames
 //   cold/QUESTION/CONTESTANT/POSE      the same poses, with cold caches
 //   points/distances/LIBRARY/POSE      how far the vertices within 2 mm are from the other body
+//   worlds/ARRANGEMENT/LIBRARY         a world of a thousand balls that share one structure
 //   avx2/QUESTION/CONTESTANT/POSE      the closing, asked of IST with AVX2 alone, where it has more
 //
 //   IST_PEERS_SECONDS   for how long each question of `peers` is asked, at least 5 rounds; by
@@ -32,6 +33,7 @@
 #include "peers/peer.h"
 #include "peers/points.h"
 #include "peers/poses.h"
+#include "peers/worlds.h"
 #include "support/bodies.h"
 #include "support/effort.h"
 #include "support/latencies.h"
@@ -216,6 +218,7 @@ void report_answer(benchmark::State& state, Question question, const Answer& ist
       state.counters["lower"] = answer.gap.lower;
       // Where it is not there, the answer is "farther than `lower`".
       if (std::isfinite(answer.gap.upper)) state.counters["upper"] = answer.gap.upper;
+      if (answer.apart) state.counters["points_apart"] = *answer.apart;
       break;
   }
 }
@@ -336,6 +339,7 @@ int main(int argc, char** argv) {
   if (avx2) asked.push_back({"avx2", {all.front().get(), avx2.get()}, closing_poses(), 0.1});
   for (const Series& each : asked) add_series(each);
   add_points(seconds_a_question());
+  add_worlds(seconds_a_question());
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

@@ -78,6 +78,13 @@ def builds(results, program):
                                     for key in ("real_time", "tree_MB", "peak_MB", "leaves")}})
 
 
+def triangles_alone(results, program):
+    if not results.has(program, "triangles_alone"):
+        return []
+    found = results.runs(program, "triangles_alone")
+    return [Run(found[0] | {key: statistics.median(run[key] for run in found) for key in ("real_time", "tree_MB")} | {"n": len(found)})]
+
+
 TABLES = {
     "near misses": Table("hardware_bench", circuit, [
         ("voxel", 1), ("dz", 2), ("pairs tested", "pairs"), ("misses", "misses"), ("of them called a hit", "false_hits"),
@@ -99,4 +106,7 @@ TABLES = {
         *((head, lambda r, p=p, form=form: form(r, p)) for p in POLICIES[1:] for head, form in (
             (f"`{p}`", lambda r, p: f"{r[p + ':real_time']:,.0f} ms"), ("in memory", lambda r, p: f"{r[p + ':tree_MB']:,.1f} MB"))),
         ("peak", lambda r: f"{r['slab:peak_MB']:,.0f} MB")]),
+    "build of triangles": Table("build_bench", triangles_alone, [
+        ("triangles of both jaws", "triangles"), ("both trees", lambda r: f"{r['real_time']:,.0f} ms"),
+        ("in memory", lambda r: f"{r['tree_MB']:,.1f} MB"), ("n", "n")]),
 }

@@ -96,7 +96,7 @@ def standing(rows, counts):
     """At how many poses IST is the fastest of those that count, as fast as the fastest, and slower; None if no other counts."""
     ist, lost, near, count = next(r for r in rows if player(r) == "ist"), [], 0, 0
     for pose in poses_of(rows):
-        other = fastest([r for r in rows if r is not ist and counts(r, pose)], pose)
+        other = fastest([r for r in rows if not player(r).startswith("ist") and counts(r, pose)], pose)
         if other is None:
             continue
         count += 1
@@ -167,6 +167,34 @@ def sampled(results, _program):
                   beyond=sum(f"{pose}:upper" not in of for pose in all_poses))
 
 
+ARRANGEMENTS = {"all_touch": "all neighbours touch", "half_touch": "half of the neighbours touch", "close": "0.01 radii apart",
+                "far": "a radius apart"}
+
+
+def worlds(results, _program):
+    """A row an arrangement of balls and a library, with the rows of the other libraries than IST."""
+    if not results.has("peers_bench", "worlds"):
+        return []
+    found = results.runs("peers_bench", "worlds")
+    for r in found:
+        r["ready_us"] = r["set_up_us"] + r["first_us"]
+        r["others"] = [one for one in found if one.parts[1] == r.parts[1] and one.parts[2] != "ist"]
+    return found
+
+
+def milliseconds(key):
+    return lambda r: number(r[key] / 1e3)
+
+
+def ist_is_worse(key):
+    """Whether the row is IST's, and another library has a smaller value at the same balls."""
+    return lambda r: r.parts[2] == "ist" and any(is_loss(one[key] / r[key]) for one in r["others"])
+
+
+def world_times(head, key):
+    return head, milliseconds(key), ist_is_worse(key)
+
+
 def least(key):
     return lambda r: r[key] == min(one[key] for one in r.rows)
 
@@ -201,6 +229,10 @@ TABLES = {
                             lambda r, pose=pose: is_loss(multiple(r, r["own"], pose))) for pose in poses_of(rows)), ("n", n)]),
     "vertices": Table("peers_bench", point_distances, lambda rows: [
         ("", 2), *((pose, pose, lambda r, pose=pose: pose in r["lost"]) for pose in rows[0] if pose not in ("name", "n", "lost")), ("n", "n")]),
+    "a thousand balls": Table("peers_bench", worlds, [
+        ("balls", lambda r: ARRANGEMENTS[r.parts[1]]), ("", 2), ("pairs that intersect", "touching"), world_times("set up, ms", "set_up_us"),
+        world_times("first answer, ms", "first_us"), world_times("both, ms", "ready_us"), world_times("all move, and an answer, ms", "moved_us"),
+        ("held, MB", "held_mb", ist_is_worse("held_mb")), ("n", n)]),
     "sampling": Table("peers_bench", lambda *given: list(sampled(*given)), [
         ("", 0), ("contacts missed", "missed"), ("false contacts", "false"), ("error of distance (mm)", "error"),
         ("poses beyond the band, distance unknown", "beyond")]),

@@ -63,6 +63,8 @@ def loop_table(what, kinds):
 
 # The goals: how many times the same pairs one by one at most, and how many µs at most.
 MOST_TIMES, MOST_APART, MOST_AT_REST = 1.15, 2, 20
+# Of a thousand balls: ms and MB.
+MOST_THOUSAND, MOST_MEGABYTES = 100, 200
 GRIDS = {"a_pair_apart": ("apart", MOST_APART), "a_pair_near_and_not_prepared": ("whose balls overlap, without a query", None),
          "hundred_at_rest": ("none near", MOST_AT_REST), "hundred_moving": ("none near", None)}
 
@@ -75,6 +77,10 @@ def in_world(rows):
     pairs = f"{rows[0]['pairs']:.0f}"
     return [("question", 2), ("`World`, p50, µs", "p50_us"), ("p99, µs", "p99_us"), (f"{pairs} queries, p50, µs", "one_by_one_p50_us"),
             ("p99, µs", "one_by_one_p99_us"), together("`World` / queries")]
+
+
+def thousand(results, program):
+    return results.runs(program, "world", "thousand_balls") if results.has(program, "world", "thousand_balls") else []
 
 
 def sweep_rates(results, program):
@@ -110,6 +116,10 @@ TABLES = {
         ("bodies", lambda r: f"{r['bodies']:.0f} bodies, {GRIDS[r.parts[1]][0]}, {r['moved']:.0f} moving"),
         ("a tick, µs", "real_time", lambda r: r["real_time"] > (GRIDS[r.parts[1]][1] or float("inf"))),
         ("at most, µs", lambda r: GRIDS[r.parts[1]][1] or "–")]),
+    "a thousand balls by threads": Table("world_bench", thousand, [
+        ("threads", "threads"), ("near pairs", "near"), ("that intersect", "touching"),
+        ("from the first body to the first answer, ms", "real_time", lambda r: r["real_time"] > MOST_THOUSAND),
+        ("reserved, MB", "megabytes", lambda r: r["megabytes"] > MOST_MEGABYTES)]),
     "sweeps": Table("sweep_bench", sweep_rates, [
         ("way", "way"), ("poses a second", "rate", lambda r: r["loses"]), ("times one thread of `ist sweep`", lambda r: f"{r['times']:.2f}")]),
 }

@@ -27,7 +27,7 @@ installs "Python, to read a recording" "apt-get install python3"
 types "the recording has forces" "python3 forces.py ticks.jsonl && python3 forces.py again.jsonl"
 program() { block docs/haptics.md block "class MyDevice" | tee "$walk/yours.cpp"; }
 step "the program of docs/haptics.md, written" program
-types "the program, built as docs/building.md says" "$(block docs/building.md line 'g++ -std=c++20 yours.cpp' | sed 's|$| -o yours|')"
+types "the program, built as docs/building.md says" "$(block docs/building.md line 'pkg-config --cflags --libs ist_loop' | sed 's|$| -o yours|')"
 types "the program, run" "./yours"
 
 types "jaws of one's own" "ist demo --keep . >times.txt && ist build lower_jaw.stl -o lower.ist --voxel-size 0.3 --unit mm"
