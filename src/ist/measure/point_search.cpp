@@ -62,6 +62,13 @@ std::vector<SurfaceDistance> distances_of(const SphereTree& tree, const PointSea
   std::vector<SurfaceDistance> out(points.size());
   const TreeTriangles& body = *parts_of(tree).triangles;
   static_cast<void>(body.sides());  // made here, so that its loops have all threads
+  const OuterBalls* balls = body.outer_balls();
+  const double size = tree.bounding_radius() + tree.origin().cwiseAbs().maxCoeff();
+  // In a ball by more than the reach, a point is beyond the reach.
+  const auto is_far = [&](const Vector& point) {
+    const double rounding = kTie * (size + point.cwiseAbs().maxCoeff());
+    return balls != nullptr && balls->bound_at(point) < -(reach + rounding);
+  };
   for (std::size_t done = 0; done < points.size(); done += kAtOnce) {
     if (proceed && !proceed(static_cast<double>(done) / static_cast<double>(points.size()))) {
       out.resize(done);
@@ -71,6 +78,10 @@ std::vector<SurfaceDistance> distances_of(const SphereTree& tree, const PointSea
     parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
       std::optional<std::uint32_t> last;
       for (std::size_t i = done + begin; i < done + end; ++i) {
+        if (is_far(points[i])) {
+          out[i] = beyond_reach();
+          continue;
+        }
         const std::optional<NearestTriangle> nearest = search.nearest(points[i], reach, last);
         out[i] = nearest ? with_sign(body, *nearest, points[i]) : beyond_reach();
         if (nearest) last = nearest->triangle;

@@ -72,22 +72,20 @@ struct OuterBalls {
     const std::uint32_t within = ((z % kGroup) * kGroup + y % kGroup) * kGroup + x % kGroup;
     return (entry >> 1) + ((entry & 1U) != 0 ? within : 0);
   }
-  /// Returns the cell that holds a coordinate, or the nearest one of the grid.
-  [[nodiscard]] std::uint32_t cell_at(double coordinate, std::size_t axis) const noexcept {
-    const double at = (coordinate - double{low(axis)}) / double{cell};
-    const std::uint32_t last = kGroup * groups[axis] - 1;
-    if (!(at > 0)) return 0;
-    return at < last ? static_cast<std::uint32_t>(at) : last;
-  }
-  /// Returns a bound of the depth of a point, mesh coordinates: no more than |p - centre| - radius
-  /// of its cell's ball, but for rounding.
+  /// Returns a bound of the depth of a point, mesh coordinates, by the ball of its cell: rounded,
+  /// |p - centre| - radius. It is negative in the ball.
   [[nodiscard]] double bound_at(const Eigen::Vector3d& point) const noexcept {
+    const double to_units = 1 / unit, to_cells = 1 / double{cell};
     double at[3];
+    std::uint32_t place[3];
     for (std::size_t i = 0; i < 3; ++i) {
       const auto axis = static_cast<Eigen::Index>(i);
-      at[i] = (point[axis] - middle[axis]) / unit;
+      at[i] = (point[axis] - middle[axis]) * to_units;
+      const double inside = (at[i] - double{low(i)}) * to_cells;
+      const std::uint32_t last = kGroup * groups[i] - 1;
+      place[i] = !(inside > 0) ? 0 : inside < last ? static_cast<std::uint32_t>(inside) : last;
     }
-    const OuterBall& ball = balls[ball_at(cell_at(at[0], 0), cell_at(at[1], 1), cell_at(at[2], 2))];
+    const OuterBall& ball = balls[ball_at(place[0], place[1], place[2])];
     const double x = at[0] - ball.x(), y = at[1] - ball.y(), z = at[2] - ball.z();
     return (std::sqrt((x * x + y * y) + z * z) - ball.radius()) * unit;
   }
