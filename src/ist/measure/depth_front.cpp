@@ -81,7 +81,6 @@ bool DepthFront::search_all(DepthSearch& search, bool keeps) {
     const auto level = static_cast<std::uint8_t>(sides_[side].clusters.root_level());
     open_node({HUGE_VAL, 0, 0, level, side, 0, kNowhere}, search);
   }
-  std::sort(clusters_.begin(), clusters_.end());
   if (!search.deepest()) probe(search);
   const bool is_complete = finish(search);
   most_entries_ = keys_.size() + kMoreEntries;
@@ -116,7 +115,6 @@ bool DepthFront::search_front(DepthSearch& search, const std::array<double, 2>& 
       open_node(one, search);
     }
   }
-  std::sort(clusters_.begin(), clusters_.end());
   return finish(search);
 }
 
@@ -229,7 +227,10 @@ void DepthFront::open_cluster(const Open& cluster, DepthSearch& search) {
 // point.
 void DepthFront::probe(DepthSearch& search) {
   triangles_.clear();
-  for (std::size_t k = 0; k < std::min(kProbedClusters, clusters_.size()); ++k) {
+  const std::size_t count = std::min(kProbedClusters, clusters_.size());
+  std::partial_sort(clusters_.begin(), clusters_.begin() + static_cast<std::ptrdiff_t>(count),
+                    clusters_.end());
+  for (std::size_t k = 0; k < count; ++k) {
     const Open& cluster = clusters_[k];
     alignas(64) float bounds[kClusterWidth];
     const BallLanes found = bound_triangles(cluster, search, bounds);
