@@ -83,7 +83,7 @@ std::vector<Case> bodies() {
           {"crossing itself", joined(icosphere(2, 2), moved(icosphere(2, 2), {1, 0.5, 0}))},
           {"a ball in a ball", joined(icosphere(2, 2), inside_out(icosphere(2, 1)))},
           {"inside out", inside_out(torus(3, 1, 12, 9))},
-          {"tiny", scaled_body(icosphere(2, 0.4), 1e-12)},
+          {"tiny", scaled_body(icosphere(2, 0.6), 1e-12)},
           {"huge", scaled_body(icosphere(2, 0.4), 1e15)}};
 }
 

@@ -214,7 +214,8 @@ TEST_P(BallKernels, BoundTrianglesByTheirCorners) {
         ASSERT_GE(double{bounds[k]}, least) << one.name;
         const float around = kernels_.bound_around(floats, grid, placed.pose.pad);
         ASSERT_EQ(around, bound_around_scalar(floats, grid, placed.pose.pad));
-        ASSERT_LE(double{around}, least + 1e-5 * std::abs(least) + 2 * double{placed.pose.pad});
+        // Its own pads and those of the other kernel: of places, and of distances up to 2^17.
+        ASSERT_LE(double{around}, least + 2 * double{placed.pose.pad} + 2);
       });
     }
   }
