@@ -13,6 +13,10 @@ using Vector = Eigen::Vector3d;
 constexpr std::uint64_t kLook = 32;
 // Points between two questions whether to go on.
 constexpr std::uint64_t kAsk = 1024;
+// A piece of a triangle that was handed over is measured if its triangle has fewer near triangles,
+// or was quartered as often. Quartering is cheaper than measuring if some near triangles are known.
+constexpr std::uint8_t kFewNear = 2;
+constexpr int kMeasuredFrom = 3;
 // The least height of a piece that is quartered, as a part of its longest edge.
 constexpr double kLeastHeight = 1.0 / 4;
 
@@ -374,7 +378,7 @@ void DepthSearch::add_handed(std::uint32_t side, const Piece& piece, double boun
     return;
   }
   const Vector at = middle(t);
-  if (handed.near.count < 2 || piece.depth >= 2) {
+  if (handed.near.count < kFewNear || piece.depth >= kMeasuredFrom) {
     double radius = 0;
     for (const Vector& corner : t) radius = std::max(radius, distance_between(corner, at));
     const auto hint = handed.near.count > 0 ? std::optional(handed.near.triangle[0]) : std::nullopt;
