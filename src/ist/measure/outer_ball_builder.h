@@ -17,12 +17,12 @@ namespace ist {
 /// reaches take the best ball of a neighbour, or look for a ball of their own. A centre whose side
 /// is unknown gets no ball.
 ///
-/// The edge of a cell is 2 √(mean area of a triangle), and at most 1/32 of the body's longest edge.
-/// It grows until the field has at most 28 bytes a triangle, or 1 MiB if that is more.
+/// The edge of a cell is 1.5 √(mean area of a triangle), and at most 1/32 of the body's longest
+/// edge. It grows until the field has at most 28 bytes a triangle, or 1 MiB if that is more.
 ///
 /// The same bits for any number of threads and on every instruction set. Throws kMemoryLimit if no
-/// cells fit `max_memory`, and kCancelled. Cost: 8 µs a triangle and core. Precondition: the tree
-/// has triangles.
+/// cells fit `max_memory`, and kCancelled. Cost: 9 to 18 µs a triangle, shared by all cores.
+/// Precondition: the tree has triangles.
 [[nodiscard]] OuterBalls make_outer_balls(const SphereTree& tree, std::uint64_t max_memory,
                                           Progress* progress);
 
