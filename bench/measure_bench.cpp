@@ -4,6 +4,9 @@
 //   measure/distances/POSE          both bodies' vertices within 2 mm, afresh
 //   measure/distance/POSE           of the surfaces, to 0.05 mm, afresh
 //   measure/depth/cold|warm/POSE    to 0.01 mm; warm from the answer 0.02 mm away
+//   measure/depth/balls/POSE        cold by outer balls, and without them in turn: both medians
+//   measure/depth/carried/HOW/STEP  by a tracker: sliding or lifting by STEP µm a question
+//   measure/outer_balls/upper|lower made once a tree
 //   measure/first_contact/MOTION    to 1 µm
 //   measure/occlusion/POSE          all of it
 //   measure/normals/upper|lower     made once a tree
@@ -147,6 +150,19 @@ void add(const std::string& name, const Body& body) {
       ->UseRealTime();
 }
 
+template <class Body>
+void add_manual(const std::string& name, const Body& body) {
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [=](benchmark::State& state) {
+                                 const ScopedThreadLimit one(1);
+                                 body(state);
+                                 state.SetLabel(pair_name());
+                               })
+      ->Unit(benchmark::kMicrosecond)
+      ->UseManualTime()
+      ->Iterations(1);
+}
+
 void distances(benchmark::State& state, const Eigen::Isometry3d& pose) {
   const auto& [fixed, moving] = triangle_trees(kVoxelSize);
   std::size_t near = 0;
@@ -172,6 +188,87 @@ void depth(benchmark::State& state, const Eigen::Isometry3d& pose, bool warm) {
   state.counters["points"] = static_cast<double>(found.points);
   state.counters["lower"] = found.lower;
   state.counters["upper"] = found.upper;
+}
+
+// The same bodies as triangle_trees(), with outer balls.
+const std::pair<SphereTree, SphereTree>& prepared_trees() {
+  static const std::pair<SphereTree, SphereTree> trees = [] {
+    std::pair made(build_tree(upper_jaw()), build_tree(lower_jaw()));
+    prepare_depth(made.first);
+    prepare_depth(made.second);
+    return made;
+  }();
+  return trees;
+}
+
+// Asks with and without balls in turn. Each question is asked twice, and the second time counts:
+// the other one has emptied the caches.
+void depth_by_balls(benchmark::State& state, const Eigen::Isometry3d& pose) {
+  const auto& [fixed, moving] = prepared_trees();
+  Query plain = make_query(), prepared(fixed, moving);
+  Latencies by_points, by_balls;
+  Penetration found, without;
+  const auto ask = [&](Query& query, Latencies& times) {
+    static_cast<void>(penetration(query, pose, kDepth));
+    const Stopwatch watch;
+    const Penetration answer = penetration(query, pose, kDepth);
+    times.add(watch.microseconds());
+    return answer;
+  };
+  for (auto _ : state) {
+    for (int turn = 0; turn < rounds(31); ++turn) {
+      without = ask(plain, by_points);
+      found = ask(prepared, by_balls);
+    }
+    state.SetIterationTime(1e-6 * by_balls.quantile(0.5));
+  }
+  if (found.lower > without.upper || found.upper < without.lower) {
+    state.SkipWithError("the intervals with and without balls do not overlap");
+    return;
+  }
+  state.counters["without"] = by_points.quantile(0.5);
+  state.counters["ratio"] = by_points.quantile(0.5) / by_balls.quantile(0.5);
+  state.counters["points"] = static_cast<double>(found.points);
+  state.counters["points_without"] = static_cast<double>(without.points);
+}
+
+void depth_carried(benchmark::State& state, const Eigen::Vector3d& from, const Eigen::Vector3d& way,
+                   double step) {
+  const auto& [fixed, moving] = prepared_trees();
+  Query query(fixed, moving);
+  constexpr double kAmplitude = 1.5;  // mm, to and fro
+  const int ticks = quick() ? 50 : 500;
+  Latencies times;
+  std::uint64_t points = 0;
+  for (auto _ : state) {
+    DepthTracker tracker;
+    for (int tick = 0; tick <= ticks; ++tick) {
+      const double gone = std::fmod(tick * step, 2 * kAmplitude);
+      const double there = kAmplitude - std::abs(gone - kAmplitude);
+      const Eigen::Isometry3d pose(Eigen::Translation3d(from + there * way));
+      const Stopwatch watch;
+      const Penetration found = penetration(query, pose, kDepth, {.tracker = &tracker});
+      if (tick == 0) continue;  // cold
+      times.add(watch.microseconds());
+      points += found.points;
+    }
+    state.SetIterationTime(1e-6 * times.quantile(0.5));
+  }
+  times.report(state);
+  state.counters["points"] = static_cast<double>(points) / ticks;
+}
+
+void outer_balls(benchmark::State& state, const TriangleMesh& mesh) {
+  for (auto _ : state) {
+    state.PauseTiming();
+    const SphereTree tree = build_tree(mesh);
+    static_cast<void>(tree.self_intersections());
+    const std::uint64_t before = tree.bytes();
+    state.ResumeTiming();
+    prepare_depth(tree);
+    state.counters["bytes_a_triangle"] =
+        static_cast<double>(tree.bytes() - before) / static_cast<double>(mesh.triangles.size());
+  }
 }
 
 void first(benchmark::State& state, const Motion& motion) {
@@ -210,6 +307,8 @@ const int kRegistered = [] {
     });
     add(fmt::format("measure/depth/cold/{}", dz), [=](auto& state) { depth(state, pose, false); });
     add(fmt::format("measure/depth/warm/{}", dz), [=](auto& state) { depth(state, pose, true); });
+    add_manual(fmt::format("measure/depth/balls/{}", dz),
+               [=](auto& state) { depth_by_balls(state, pose); });
     add(fmt::format("measure/occlusion/{}", dz), [=](auto& state) { bite(state, pose); });
   }
   add("measure/first_contact/closing",
@@ -217,6 +316,17 @@ const int kRegistered = [] {
   add("measure/first_contact/screw", [](auto& state) {
     first(state, Motion::screw(lifted(-7), {0, 0, 0}, {0, 0.1, 1}, 0.05, 7));
   });
+  for (const double microns : {2.0, 10.0, 30.0}) {
+    const double step = 1e-3 * microns;
+    add_manual(fmt::format("measure/depth/carried/sliding/{}", microns), [=](auto& state) {
+      depth_carried(state, {0, 0, -0.5}, {1, 0.1, 0}, step);
+    });
+    add_manual(fmt::format("measure/depth/carried/lifting/{}", microns), [=](auto& state) {
+      depth_carried(state, {0, 0, -0.2}, {0, 0, -1}, step);
+    });
+  }
+  add("measure/outer_balls/upper", [](auto& state) { outer_balls(state, upper_jaw()); });
+  add("measure/outer_balls/lower", [](auto& state) { outer_balls(state, lower_jaw()); });
   add("measure/normals/upper", [](auto& state) { normals(state, upper_jaw()); });
   add("measure/normals/lower", [](auto& state) { normals(state, lower_jaw()); });
   add_by_accuracy();

@@ -7,6 +7,7 @@
 
 #include "ist/base/platform/bit_cast.h"
 #include "ist/mesh/clusters/triangle_clusters.h"
+#include "simd/triangles/ball_step.h"
 #include "simd/triangles/closest.h"
 
 /// The interface of the kernels that look for the triangle nearest to a point, and of those that
@@ -259,6 +260,9 @@ struct ClusterKernels {
   NearNodesFunction near_nodes;
   NearTrianglesFunction near_triangles;
   ClosestOctetFunction closest_octet;
+  BoundNodesFunction bound_nodes;
+  BoundCornersFunction bound_corners;
+  BoundAroundFunction bound_around;
 };
 
 /// The kernels without vectors: they specify the others. Cost: 0.3 µs a test of a node against

@@ -7,6 +7,7 @@
 
 #include <limits>
 
+#include "simd/triangles/balls-inl.h"
 #include "simd/triangles/closest-inl.h"
 #include "simd/triangles/clusters-inl.h"
 #include "simd/triangles/nodes-inl.h"
@@ -266,7 +267,8 @@ namespace ist::simd {
         HWY_CHOOSE_##TARGET(ScoreChildren), HWY_CHOOSE_##TARGET(MeetClusters),   \
         HWY_CHOOSE_##TARGET(DecideTriangles), HWY_CHOOSE_##TARGET(NearClusters), \
         HWY_CHOOSE_##TARGET(NearNodes), HWY_CHOOSE_##TARGET(NearTriangles),      \
-        HWY_CHOOSE_##TARGET(ClosestOctet)                                        \
+        HWY_CHOOSE_##TARGET(ClosestOctet), HWY_CHOOSE_##TARGET(BoundNodes),      \
+        HWY_CHOOSE_##TARGET(BoundCorners), HWY_CHOOSE_##TARGET(BoundAround)      \
   }
 
 ClusterKernels cluster_kernels(std::int64_t target) {

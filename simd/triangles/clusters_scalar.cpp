@@ -250,6 +250,7 @@ std::size_t near_clusters_scalar(const ClusterStep& step, const ClusterPairs& pa
 constinit const ClusterKernels kScalarClusterKernels{
     turn_nodes_scalar,     meet_nodes_scalar,     list_lanes_scalar,       meet_children_scalar,
     score_children_scalar, meet_clusters_scalar,  decide_triangles_scalar, near_clusters_scalar,
-    near_nodes_scalar,     near_triangles_scalar, closest_octet_scalar};
+    near_nodes_scalar,     near_triangles_scalar, closest_octet_scalar,    bound_nodes_scalar,
+    bound_corners_scalar,  bound_around_scalar};
 
 }  // namespace ist

@@ -89,7 +89,7 @@ TEST_F(Input, TreesOfAnotherVersionAreRefusedWithTheRemedy) {
   older[8] = 3;
   const std::string file = write("older.ist", older);
   const std::string why =
-      "it is of version 3, and this program reads version 4: build it again from the mesh";
+      "it is of version 3, and this program reads versions 4 to 5: build it again from the mesh";
   refuses({"info", file}, file, why);
   refuses({"collide", file, ball(), "--poses", poses({0})}, file, why);
 }

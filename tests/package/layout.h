@@ -31,8 +31,9 @@ consteval auto numbers_of(auto... places) {
                ist::ServoCallback, ist::LatencyHistogram, ist::ServoOptions, ist::ServoOutputs,
                ist::ServoReport, ist::Snapshot<ist::TickRecord>, ist::TickRing<ist::TickRecord>,
                ist::Scene, ist::BuiltScene, ist::SurfaceDistance, ist::Penetration,
-               ist::PenetrationOptions, ist::Motion, ist::FirstContact, ist::FirstContactOptions,
-               ist::ContactRegion, ist::SurfaceOcclusion, ist::Occlusion, ist::OcclusionOptions>(
+               ist::PenetrationOptions, ist::DepthTracker, ist::Motion, ist::FirstContact,
+               ist::FirstContactOptions, ist::ContactRegion, ist::SurfaceOcclusion, ist::Occlusion,
+               ist::OcclusionOptions>(
         offsetof(ist::TriangleMesh, triangles), offsetof(ist::Contact, weight),
         offsetof(ist::ContactSums, spring), offsetof(ist::QueryResult, pad),
         offsetof(ist::Placement, translation), offsetof(ist::Response, stiffness),

@@ -119,7 +119,7 @@ const std::vector<Damage>& damages() {
       put("DepthOneMore", F::kDepth, 3u, "tree-truncated"),
       put("DepthHuge", F::kDepth, kMany),
       put("OrientationUnknown", F::kOrientation, 7u),
-      put("SectionUnknown", F::kSections, 31u),
+      put("SectionUnknown", F::kSections, 47u),
       put("SectionMissing", F::kSections, 11u),
       {"SlabsWithoutBalls", drop_balls},
       put("UnitUnknown", F::kUnit, 5u),
@@ -194,7 +194,7 @@ TEST(DamagedTree, EachFieldOfThePreambleHasAnErrorOfItsOwn) {
     return error_of_bytes(file.bytes);
   };
   EXPECT_EQ(with(TreeFile::kMagic, 'x'), "not-a-tree");
-  EXPECT_EQ(with(TreeFile::kVersion, 5u), "tree-version");
+  EXPECT_EQ(with(TreeFile::kVersion, 6u), "tree-version");
   EXPECT_EQ(with(TreeFile::kVersion, 0u), "tree-version");
   EXPECT_EQ(with(TreeFile::kByteOrder, 0x04030201u), "not-a-tree");
   EXPECT_EQ(with(TreeFile::kBytes, std::uint64_t{32}), "tree-truncated");
@@ -209,10 +209,9 @@ TEST(DamagedTree, OfAnEarlierVersionIsRefusedWithTheRemedy) {
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kTreeVersion);
   const std::string what = error->what();
-  EXPECT_NE(
-      what.find(
-          "it is of version 3, and this program reads version 4: build it again from the mesh"),
-      std::string::npos)
+  EXPECT_NE(what.find("it is of version 3, and this program reads versions 4 to 5: build it again "
+                      "from the mesh"),
+            std::string::npos)
       << what;
 }
 
@@ -319,7 +318,7 @@ TEST(DamagedTree, WithoutVoxelsEachFieldIsChecked) {
   EXPECT_NE(error_of_bytes(file.with(TreeFile::kCells, 1u)), "none");
   expect_corrupt(file.with(TreeFile::kDepth, 1u), "depth");
   expect_corrupt(file.with(TreeFile::kOrientation, 7u), "orientation");
-  for (const std::uint32_t sections : {0u, 1u, 3u, 6u, 15u, 18u}) {
+  for (const std::uint32_t sections : {0u, 1u, 3u, 6u, 15u, 18u, 34u}) {
     expect_corrupt(file.with(TreeFile::kSections, sections), "sections");
   }
   expect_corrupt(file.with(FileWithoutVoxels::kVertices, kNaN), "vertex");

@@ -33,6 +33,45 @@ using Vector = Eigen::Vector3d;
 // More than the error of a distance to a sliver, as a part of the coordinates.
 constexpr double kTie = 0x1p-37;
 
+// Finds points that are beyond a reach by outer balls alone: those in the ball of their cell by
+// more than the reach.
+class FarPoints {
+ public:
+  FarPoints(const OuterBalls& field, double reach, double size)
+      : field_(field),
+        to_units_(1 / field.unit),
+        to_cells_(1 / double{field.cell}),
+        reach_((reach + kTie * size) * to_units_) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      low_[i] = field.low(i);
+      last_[i] = static_cast<double>(OuterBalls::kGroup * field.groups[i]) - 0.5;
+    }
+  }
+
+  [[nodiscard]] bool holds(const Vector& point) const noexcept {
+    double at[3], size = 0;
+    std::uint32_t cell[3];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto axis = static_cast<Eigen::Index>(i);
+      at[i] = (point[axis] - field_.middle[axis]) * to_units_;
+      size = std::max(size, std::abs(at[i]));
+      const double inside = (at[i] - low_[i]) * to_cells_;
+      const double above = inside > 0 ? inside : 0;
+      cell[i] = static_cast<std::uint32_t>(above < last_[i] ? above : last_[i]);
+    }
+    const OuterBall& ball = field_.balls[field_.ball_at(cell[0], cell[1], cell[2])];
+    const double within = ball.radius() - (reach_ + kTie * size);
+    if (!(within > 0)) return false;
+    const double x = at[0] - ball.x(), y = at[1] - ball.y(), z = at[2] - ball.z();
+    return (x * x + y * y) + z * z < within * within;
+  }
+
+ private:
+  const OuterBalls& field_;
+  const double to_units_, to_cells_, reach_;
+  double low_[3], last_[3];
+};
+
 template <class Body>
 void for_each_bit(std::uint32_t bits, const Body& body) {
   for (; bits != 0; bits &= bits - 1) body(static_cast<std::uint32_t>(std::countr_zero(bits)));
@@ -62,6 +101,11 @@ std::vector<SurfaceDistance> distances_of(const SphereTree& tree, const PointSea
   std::vector<SurfaceDistance> out(points.size());
   const TreeTriangles& body = *parts_of(tree).triangles;
   static_cast<void>(body.sides());  // made here, so that its loops have all threads
+  const double size = tree.bounding_radius() + tree.origin().cwiseAbs().maxCoeff();
+  const std::optional<FarPoints> far =
+      body.outer_balls() != nullptr && std::isfinite(reach)
+          ? std::optional<FarPoints>(std::in_place, *body.outer_balls(), reach, size)
+          : std::nullopt;
   for (std::size_t done = 0; done < points.size(); done += kAtOnce) {
     if (proceed && !proceed(static_cast<double>(done) / static_cast<double>(points.size()))) {
       out.resize(done);
@@ -71,6 +115,10 @@ std::vector<SurfaceDistance> distances_of(const SphereTree& tree, const PointSea
     parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
       std::optional<std::uint32_t> last;
       for (std::size_t i = done + begin; i < done + end; ++i) {
+        if (far && far->holds(points[i])) {
+          out[i] = beyond_reach();
+          continue;
+        }
         const std::optional<NearestTriangle> nearest = search.nearest(points[i], reach, last);
         out[i] = nearest ? with_sign(body, *nearest, points[i]) : beyond_reach();
         if (nearest) last = nearest->triangle;

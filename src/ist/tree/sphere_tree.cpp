@@ -107,6 +107,13 @@ const TreeTriangles::Lazy& TreeTriangles::made() const {
   return *lazy_;
 }
 
+void TreeTriangles::keep_outer_balls(OuterBalls balls) const {
+  std::call_once(lazy_->balls_once, [&] {
+    lazy_->kept_balls.emplace(std::move(balls));
+    lazy_->balls.store(&*lazy_->kept_balls, std::memory_order_release);
+  });
+}
+
 void require_voxels(const SphereTree& tree, std::string_view body) {
   if (tree.has_voxels()) return;
   throw_error(ErrorCode::kVoxelsMissing, "{}: the tree holds no voxels: build it with a voxel size",
@@ -209,6 +216,8 @@ std::uint64_t SphereTree::bytes() const noexcept {
   if (parts_->triangles) {
     bytes += size(parts_->triangles->mesh.vertices) + size(parts_->triangles->mesh.triangles) +
              parts_->triangles->clusters.bytes();
+    const OuterBalls* balls = parts_->triangles->outer_balls();
+    if (balls != nullptr) bytes += balls->bytes();
   }
   return bytes;
 }

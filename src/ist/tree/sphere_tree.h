@@ -133,7 +133,8 @@ class IST_API SphereTree {
   /// The radius of the largest leaf sphere; 0 without voxels. Precondition: has(policy), or the
   /// tree lacks voxels.
   [[nodiscard]] double largest_leaf_radius(SpherePolicy policy) const noexcept;
-  /// Bytes in memory, without the 24 a triangle that ist/measure.h adds at its first use.
+  /// Bytes in memory, with outer balls if there are any (prepare_depth()), without the 24 a
+  /// triangle that ist/measure.h adds at its first use.
   [[nodiscard]] std::uint64_t bytes() const noexcept;
 
  private:
@@ -201,8 +202,9 @@ struct BuildReport {
 [[nodiscard]] IST_API bool can_build_tree(const TriangleMesh& mesh, const BuildOptions& options,
                                           Progress* progress = nullptr);
 
-/// The version of the tree file (`.ist`) that this library writes and reads.
-inline constexpr std::uint32_t kTreeFileVersion = 4;
+/// The newest version of the tree file (`.ist`) that this library writes and reads. A tree without
+/// outer balls (prepare_depth()) is written as version 4, which earlier programs read too.
+inline constexpr std::uint32_t kTreeFileVersion = 5;
 
 /// Writes the file whole or not at all. Throws kFileUnwritable. Cost: bound by the disk.
 /// Returns the bytes written.

@@ -12,11 +12,12 @@
 #include "ist/base/platform/bit_cast.h"
 #include "ist/mesh/bounding_box.h"
 #include "ist/tree/mesh_source.h"
+#include "ist/tree/outer_balls_file.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 #include "ist/tree/tree_stream.h"
 
-// The tree file, `.ist`, version 4. Little-endian, packed, in this order:
+// The tree file, `.ist`, versions 4 and 5. Little-endian, packed, in this order:
 //
 //     8 bytes   magic 89 49 53 54 0D 0A 1A 0A
 //     u32       version
@@ -25,7 +26,8 @@
 //     u64       XXH3-64 of all bytes that follow
 //     f64 × 3   the grid's corner      f64  voxel size
 //     u32       cells an axis          u32  depth
-//     u32       orientation            u32  sections: 1 balls, 2 triangles, 4 proximity, 8 slabs
+//     u32       orientation            u32  sections: 1 balls, 2 triangles, 4 proximity, 8 slabs,
+//                                           16 outer balls
 //     u64       hash of the mesh's file, 0 if unknown
 //     u8        unit: 0 unknown, 1 millimetre, 2 metre, 3 inch, 4 micrometre
 //     u8        frame: 0 unknown, 1 RAS, 2 LPS
@@ -40,10 +42,13 @@
 //                 f64 × 3 …, u32 × 3 … vertices, triangles
 //                 u32 …, u32 …         the lists' beginnings (leaves + 1), their entries
 //     proximity:  u32, u32 × depth, u32, u8 …   depth, nodes, leaves, masks
+//     outer balls: outer_balls_file.h
+//
+// A file with outer balls is of version 5, any other one of version 4.
 //
 // A file whose voxel size and cells are 0 is of a tree without voxels. Its corner, depth and list
-// entries are 0 too, its one section has the triangles, and it lacks the nodes, masks, normals and
-// lists.
+// entries are 0 too, its sections are triangles and outer balls, and it lacks the nodes, masks,
+// normals and lists.
 //
 // Children's indices and cubes are not stored: they follow from the masks. Balls and slabs hold the
 // numbers of PackedBall and PackedSlab.
@@ -54,7 +59,8 @@ enum Section : std::uint32_t {
   kBallsSection = 1,
   kTrianglesSection = 2,
   kProximitySection = 4,
-  kSlabsSection = 8
+  kSlabsSection = 8,
+  kOuterBallsSection = 16
 };
 
 struct Header {
@@ -216,7 +222,8 @@ bool is_without_voxels(const Header& header) {
 
 // Verifies the header and the triangles of a tree without voxels.
 void verify_no_voxels(const TreeReader& reader, const Header& header, const TriangleMesh& mesh) {
-  reader.require(header.sections == kTrianglesSection, "without voxels it has other sections");
+  reader.require((header.sections & ~kOuterBallsSection) == kTrianglesSection,
+                 "without voxels it has other sections");
   reader.require(
       std::all_of(header.corner.begin(), header.corner.end(), is_zero) && header.depth == 0,
       "it has a grid without a voxel size");
@@ -255,14 +262,24 @@ void verify_triangles(const TreeReader& reader, const Lattice& lattice, const Tr
   }
 }
 
-Header header_of(const SphereTree& tree) {
+const OuterBalls* outer_balls_of(const SphereTree& tree) {
+  const auto& triangles = parts_of(tree).triangles;
+  return triangles ? triangles->outer_balls() : nullptr;
+}
+
+std::uint32_t version_of(const OuterBalls* balls) {
+  return balls != nullptr ? kTreeFileVersion : kOldestTreeFile;
+}
+
+Header header_of(const SphereTree& tree, const OuterBalls* balls) {
   const Lattice lattice =
       tree.has_voxels() ? voxels_of(tree).lattice : Lattice{.voxel_size = 0, .cells = 0};
   const MeshSource& source = tree.source();
   const std::uint32_t sections = (tree.has(SpherePolicy::kTight) ? kBallsSection : 0u) |
                                  (tree.has(SpherePolicy::kSlab) ? kSlabsSection : 0u) |
                                  (tree.triangles() ? kTrianglesSection : 0u) |
-                                 (tree.has_proximity() ? kProximitySection : 0u);
+                                 (tree.has_proximity() ? kProximitySection : 0u) |
+                                 (balls != nullptr ? kOuterBallsSection : 0u);
   return {lattice.corner,
           lattice.voxel_size,
           lattice.cells,
@@ -287,12 +304,14 @@ void write_mesh(TreeWriter& writer, const TriangleMesh& mesh, const TriangleList
   writer.array(lists.ids);
 }
 
-std::uint64_t write(const SphereTree& tree, TreeWriter writer) {
+// `balls` are the tree's outer balls, or null.
+std::uint64_t write(const SphereTree& tree, const OuterBalls* balls, TreeWriter writer) {
   const ScopedFloatEnvironment environment;
-  writer.value(header_of(tree));
+  writer.value(header_of(tree, balls));
   writer.array(tree.source().name);
   if (!tree.has_voxels()) {
     write_mesh(writer, *tree.triangles(), {});
+    if (balls != nullptr) write_outer_balls(writer, *balls);
     return writer.commit();
   }
   const TreeVoxels& voxels = voxels_of(tree);
@@ -309,6 +328,7 @@ std::uint64_t write(const SphereTree& tree, TreeWriter writer) {
     writer.value(static_cast<std::uint32_t>(voxels.proximity->octree.depth()));
     write_octree(writer, voxels.proximity->octree);
   }
+  if (balls != nullptr) write_outer_balls(writer, *balls);
   return writer.commit();
 }
 
@@ -332,7 +352,9 @@ MeshAndLists read_mesh(TreeReader& reader, const Header& header,
 
 void verify_header(TreeReader& reader, const Header& header, const MeshSource& source) {
   reader.verify_checksum();
-  reader.require(header.sections <= 15, "it lists an unknown section");
+  reader.require(header.sections <= 31, "it lists an unknown section");
+  reader.require(((header.sections & kOuterBallsSection) != 0) == (reader.version() >= 5),
+                 "its version does not fit its sections");
   reader.require(header.orientation <= static_cast<std::uint32_t>(Orientation::kAssumed),
                  "its orientation is unknown");
   verify_source(reader, header, source);
@@ -346,14 +368,26 @@ TreeParts parts_with(const Header& header, MeshSource source) {
   return parts;
 }
 
+std::optional<OuterBalls> read_balls(TreeReader& reader, const Header& header) {
+  if (reader.version() < 5 || (header.sections & kOuterBallsSection) == 0) return std::nullopt;
+  return read_outer_balls(reader);
+}
+
+void keep(std::optional<OuterBalls> balls, const TreeParts& parts) {
+  if (balls) parts.triangles->keep_outer_balls(std::move(*balls));
+}
+
 SphereTree read_without_voxels(TreeReader& reader, const Header& header, MeshSource source) {
   auto [mesh, lists] = read_mesh(reader, header, std::nullopt);
+  std::optional<OuterBalls> balls = read_balls(reader, header);
   verify_header(reader, header, source);
   verify_no_voxels(reader, header, mesh);
   reader.require(lists.ids.empty(), "it has leaves' triangles without voxels");
+  if (balls) verify_outer_balls(reader, *balls);
   TreeParts parts = parts_with(header, std::move(source));
   const Eigen::Vector3d origin = middle_of(mesh);
   parts.triangles.emplace(std::move(mesh), origin);
+  keep(std::move(balls), parts);
   return tree_from(std::move(parts));
 }
 
@@ -379,9 +413,12 @@ SphereTree read(TreeReader reader) {
     const auto proximity_depth = reader.value<std::uint32_t>();
     proximity = read_octree(reader, proximity_depth);
   }
+  std::optional<OuterBalls> outer_balls = read_balls(reader, header);
 
   verify_header(reader, header, source);
   reader.require(slabs.empty() || !balls.empty(), "it has slabs without balls");
+  reader.require(!outer_balls || triangles, "it has outer balls without triangles");
+  if (outer_balls) verify_outer_balls(reader, *outer_balls);
   verify_lattice(reader, lattice);
   if (triangles) verify_triangles(reader, lattice, triangles->first, triangles->second);
   TreeParts parts = parts_with(header, std::move(source));
@@ -390,6 +427,7 @@ SphereTree read(TreeReader reader) {
   if (triangles) {
     parts.triangles.emplace(std::move(triangles->first), lattice.origin());
     voxels.lists = std::move(triangles->second);
+    keep(std::move(outer_balls), parts);
   }
   voxels.bounds.balls =
       verified<BallBlock>(reader, voxels.octree, std::move(balls), "a ball has no radius");
@@ -402,12 +440,14 @@ SphereTree read(TreeReader reader) {
 }  // namespace
 
 std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::path& file) {
-  return write(tree, TreeWriter(file));
+  const OuterBalls* balls = outer_balls_of(tree);
+  return write(tree, balls, TreeWriter(file, version_of(balls)));
 }
 
 std::vector<std::byte> tree_to_bytes(const SphereTree& tree) {
   std::vector<std::byte> bytes;
-  write(tree, TreeWriter(bytes));
+  const OuterBalls* balls = outer_balls_of(tree);
+  write(tree, balls, TreeWriter(bytes, version_of(balls)));
   return bytes;
 }
 

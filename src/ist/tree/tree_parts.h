@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -18,6 +19,7 @@
 #include "ist/tree/frame_origin.h"
 #include "ist/tree/implicit_ball.h"
 #include "ist/tree/linear_octree.h"
+#include "ist/tree/outer_balls.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/voxel/classify.h"
 #include "ist/voxel/lattice.h"
@@ -48,12 +50,21 @@ struct TreeTriangles {
   [[nodiscard]] Side side_of(const Eigen::Vector3d& point, const NearestTriangle& nearest) const {
     return sides().of(mesh, clusters, point, nearest);
   }
+  /// Returns the outer balls, or null before keep_outer_balls().
+  [[nodiscard]] const OuterBalls* outer_balls() const noexcept {
+    return lazy_->balls.load(std::memory_order_acquire);
+  }
+  /// Keeps outer balls of this surface. The first ones stay. Any thread may call it.
+  void keep_outer_balls(OuterBalls balls) const;
 
  private:
   struct Lazy {
     std::once_flag once;
     std::optional<SurfaceSides> sides;
     std::vector<Eigen::Vector3d> component_points;
+    std::once_flag balls_once;
+    std::optional<OuterBalls> kept_balls;
+    std::atomic<const OuterBalls*> balls = nullptr;  // to kept_balls
   };
   [[nodiscard]] const Lazy& made() const;
 

@@ -22,9 +22,10 @@ namespace ist {
 /// layout. Throws kFileUnwritable.
 class TreeWriter {
  public:
-  explicit TreeWriter(const std::filesystem::path& file);
+  /// @param version of the file
+  TreeWriter(const std::filesystem::path& file, std::uint32_t version);
   /// @param memory takes the file; must outlive the writer
-  explicit TreeWriter(std::vector<std::byte>& memory);
+  TreeWriter(std::vector<std::byte>& memory, std::uint32_t version);
 
   template <typename T>
   void value(const T& value) {
@@ -46,9 +47,13 @@ class TreeWriter {
 
   std::optional<OutputFile> file_;  // empty: in memory
   std::vector<std::byte>* memory_ = nullptr;
+  std::uint32_t version_;
   Checksum checksum_;
   std::uint64_t bytes_ = 0;
 };
+
+/// The oldest version that a TreeReader reads.
+inline constexpr std::uint32_t kOldestTreeFile = 4;
 
 /// Reads a tree file, from a disk or from memory, straight into the arrays of the tree. Each count
 /// is checked against the bytes left in the file; the arrays' content may be trusted only after
@@ -77,6 +82,8 @@ class IST_LOOP_API TreeReader {
     return values;
   }
 
+  /// The version of the file.
+  [[nodiscard]] std::uint32_t version() const noexcept { return version_; }
   void verify_checksum() const;
   void require(bool holds, const char* otherwise) const {
     if (!holds) corrupt(otherwise);
@@ -94,6 +101,7 @@ class IST_LOOP_API TreeReader {
   std::span<const std::byte> memory_;
   std::string name_;
   Checksum checksum_;
+  std::uint32_t version_ = 0;
   std::uint64_t expected_ = 0, size_, left_;
 };
 
