@@ -6,8 +6,8 @@
 
 #include "ist/base/assert.h"
 #include "ist/base/ordered_vector.h"
-#include "ist/base/symmetric_eigen.h"
 #include "ist/tree/enclosing_ball.h"
+#include "ist/tree/least_axis.h"
 
 namespace ist {
 namespace {
@@ -20,17 +20,17 @@ constexpr double kTolerance = 0.008;
 double nearest(double value) noexcept { return std::floor(value + 0.5); }
 
 Vector3d least_spread(std::span<const Vector3d> points) noexcept {
-  Vector3d mean = Vector3d::Zero();
-  for (const Vector3d& p : points) mean += p - points[0];
-  mean /= static_cast<double>(points.size());
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Vector3d& p : points) {
-    const Vector3d d = (p - points[0]) - mean;
+  Vector3d sum = Vector3d::Zero();
+  double products[6] = {};
+  for (const Vector3d& point : points) {
+    const Vector3d p = difference(point, points[0]);
+    add_to(sum, p);
+    double* product = products;
     for (Eigen::Index i = 0; i < 3; ++i) {
-      for (Eigen::Index j = i; j < 3; ++j) spread(i, j) += d[i] * d[j];
+      for (Eigen::Index j = i; j < 3; ++j) *product++ += p[i] * p[j];
     }
   }
-  return symmetric_eigen(spread).vectors.col(0);
+  return least_axis(moments_about_mean(static_cast<double>(points.size()), sum, products));
 }
 
 // Rounds `axis` to a packed normal and measures along it. The axis has length 1 to a few roundings,
@@ -100,7 +100,7 @@ PackedBall pack_ball(const Payload& payload, const Vector3d& parent_centre,
 
 PackedSlab pack_slab(const Payload& payload, const Vector3d& centre, double edge) noexcept {
   Extent extent = extent_along(least_spread(payload.points), payload.points, centre);
-  const double area = std::sqrt(dot_in_order(payload.area, payload.area));
+  const double area = length_in_order(payload.area);
   if (area > 0) {
     const Extent other = extent_along(payload.area / area, payload.points, centre);
     if (other.greatest - other.least < extent.greatest - extent.least) extent = other;
