@@ -106,8 +106,8 @@ struct TriangleBins {
   TriangleLists triangles;           ///< one list a block
 };
 
-/// Calls visit(x, y, z) for each cell of a block whose indices are in [low, high], in order of z,
-/// then y, then x.
+/// Calls visit(x, y, z) for each cell of a block whose indices are in [low, high], in order of x,
+/// then y, then z.
 template <typename Visit>
 void for_each_cell(const Cell& block, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
                    const Visit& visit) {
@@ -121,9 +121,9 @@ void for_each_cell(const Cell& block, const Eigen::Vector3d& low, const Eigen::V
     first[i] = static_cast<std::uint32_t>(from);
     last[i] = static_cast<std::uint32_t>(to);
   }
-  for (std::uint32_t z = first[2]; z <= last[2]; ++z)
+  for (std::uint32_t x = first[0]; x <= last[0]; ++x)
     for (std::uint32_t y = first[1]; y <= last[1]; ++y)
-      for (std::uint32_t x = first[0]; x <= last[0]; ++x) visit(x, y, z);
+      for (std::uint32_t z = first[2]; z <= last[2]; ++z) visit(x, y, z);
 }
 
 /// Counts pairs of triangle and cube on a grid of any size, without a look for them.
