@@ -17,7 +17,20 @@ using Eigen::Vector3d;
 // The part of the 1 % that the ball's centre may use.
 constexpr double kTolerance = 0.008;
 
-double nearest(double value) noexcept { return std::floor(value + 0.5); }
+// The least area of a flat payload whose normal is certain, in squares of the cube's edge.
+constexpr double kFlatArea = 0x1p-16;
+
+// Rounds a value to the nearest whole number; halves upward. Precondition: |value| <= 2^16.
+int nearest(double value) noexcept {
+  constexpr int kShift = 1 << 17;  // makes the number positive, so that a conversion rounds down
+  return static_cast<int>(value + (kShift + 0.5)) - kShift;
+}
+
+// Rounds a value up. Precondition: 0 <= value < 2^31.
+int up(double value) noexcept {
+  const int down = static_cast<int>(value);
+  return down + static_cast<int>(down < value);
+}
 
 Vector3d least_spread(std::span<const Vector3d> points) noexcept {
   Vector3d sum = Vector3d::Zero();
@@ -37,15 +50,16 @@ Vector3d least_spread(std::span<const Vector3d> points) noexcept {
 // so 126 times the axis, rounded, is no longer than 128.
 Extent extent_along(const Vector3d& axis, std::span<const Vector3d> points,
                     const Vector3d& from) noexcept {
-  const Vector3d rounded(nearest(126 * axis[0]), nearest(126 * axis[1]), nearest(126 * axis[2]));
-  const Vector3d normal = PackedSlab::kNormalUnit * rounded;
-  const double first = dot_in_order(normal, points[0] - from);
+  const int rounded[3] = {nearest(126 * axis[0]), nearest(126 * axis[1]), nearest(126 * axis[2])};
+  const Vector3d normal(PackedSlab::kNormalUnit * rounded[0], PackedSlab::kNormalUnit * rounded[1],
+                        PackedSlab::kNormalUnit * rounded[2]);
+  const double first = dot_in_order(normal, difference(points[0], from));
   Extent extent{{static_cast<std::int8_t>(rounded[0]), static_cast<std::int8_t>(rounded[1]),
                  static_cast<std::int8_t>(rounded[2]), 0, 0},
                 first,
                 first};
   for (const Vector3d& p : points.subspan(1)) {
-    const double height = dot_in_order(normal, p - from);
+    const double height = dot_in_order(normal, difference(p, from));
     extent.least = std::min(extent.least, height);
     extent.greatest = std::max(extent.greatest, height);
   }
@@ -58,28 +72,28 @@ PackedBall pack_centre(const Vector3d& centre, const Vector3d& parent_centre,
                        double parent_edge) noexcept {
   const double unit = PackedBall::kUnit * parent_edge;
   const auto packed = [&](Eigen::Index axis) {
-    const double units = nearest((centre[axis] - parent_centre[axis]) / unit);
-    return static_cast<std::int16_t>(std::clamp(units, -32768.0, 32767.0));
+    const double units = (centre[axis] - parent_centre[axis]) / unit;
+    return static_cast<std::int16_t>(nearest(std::clamp(units, -32768.0, 32767.0)));
   };
   return {packed(0), packed(1), packed(2), 0};
 }
 
 std::uint16_t pack_radius(double radius, double parent_edge) noexcept {
-  const double units = std::ceil(radius / (PackedBall::kUnit * parent_edge));
-  IST_ASSERT(units >= 1 && units <= 65535);
-  return static_cast<std::uint16_t>(units);
+  const double units = radius / (PackedBall::kUnit * parent_edge);
+  IST_ASSERT(units > 0 && units <= 65535);
+  return static_cast<std::uint16_t>(up(units));
 }
 
 PackedSlab pack_slab(const Extent& extent, double pad, double edge) noexcept {
   const double unit = PackedSlab::kUnit * edge;
-  const double offset =
-      std::clamp(nearest(0.5 * (extent.least + extent.greatest) / unit), -127.0, 127.0);
+  const int offset =
+      nearest(std::clamp(0.5 * (extent.least + extent.greatest) / unit, -127.0, 127.0));
   const double half = std::max(extent.greatest - unit * offset, unit * offset - extent.least);
-  const double units = std::ceil((half + pad) / unit);
-  if (units > 255) return {0, 0, 0, 0, 255};
+  const double units = (half + pad) / unit;
+  if (!(units <= 255)) return {0, 0, 0, 0, 255};
   PackedSlab slab = extent.normal;
   slab.offset = static_cast<std::int8_t>(offset);
-  slab.half = static_cast<std::uint8_t>(units);
+  slab.half = static_cast<std::uint8_t>(up(units));
   return slab;
 }
 
@@ -90,7 +104,7 @@ PackedBall pack_ball(const Payload& payload, const Vector3d& parent_centre,
   const Vector3d rounded = centre_of(ball, parent_centre, parent_edge);
   double farthest2 = 0;
   for (const Vector3d& p : payload.points) {
-    const Vector3d d = p - rounded;
+    const Vector3d d = difference(p, rounded);
     farthest2 = std::max(farthest2, dot_in_order(d, d));
   }
   // A distance has a relative error of a few 2⁻⁵³.
@@ -99,13 +113,19 @@ PackedBall pack_ball(const Payload& payload, const Vector3d& parent_centre,
 }
 
 PackedSlab pack_slab(const Payload& payload, const Vector3d& centre, double edge) noexcept {
-  Extent extent = extent_along(least_spread(payload.points), payload.points, centre);
+  // Heights have an error of a dozen 2⁻⁵³ of the cube's edge.
   const double area = length_in_order(payload.area);
+  const auto of_area = [&] {
+    return extent_along(scaled(1 / area, payload.area), payload.points, centre);
+  };
+  if (payload.is_flat && area > kFlatArea * (edge * edge)) {
+    return pack_slab(of_area(), payload.pad, edge);
+  }
+  Extent extent = extent_along(least_spread(payload.points), payload.points, centre);
   if (area > 0) {
-    const Extent other = extent_along(payload.area / area, payload.points, centre);
+    const Extent other = of_area();
     if (other.greatest - other.least < extent.greatest - extent.least) extent = other;
   }
-  // Heights have an error of a dozen 2⁻⁵³ of the cube's edge.
   return pack_slab(extent, payload.pad, edge);
 }
 

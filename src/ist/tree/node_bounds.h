@@ -50,7 +50,7 @@ struct Extent {
 
 /// Packs a thin slab round a payload. The normal is the axis of the points' least spread or the
 /// direction of the payload's area, whichever gives the thinner slab, rounded to its block; the
-/// width is measured along the rounded normal.
+/// width is measured along the rounded normal. A flat payload has the direction of its area.
 ///
 /// @param centre of the node's packed ball
 /// @param edge   of the node's cube, lattice units
