@@ -32,9 +32,11 @@ struct Built {
 
 Built build(const TriangleMesh& mesh, double voxel_size,
             SpherePolicy policy = SpherePolicy::kSlab) {
-  VoxelSet voxels = voxelize(mesh, {voxel_size, true});
+  BoundBuilder builder(policy);
+  VoxelSet voxels =
+      voxelize(mesh, {.voxel_size = voxel_size, .keep_triangles = true, .visitor = &builder});
   LinearOctree octree(voxels.codes, voxels.lattice.depth);
-  BoundBlocks bounds = build_bounds(policy, mesh, voxels, octree);
+  BoundBlocks bounds = builder.finish(octree);
   return {std::move(voxels), std::move(octree), std::move(bounds)};
 }
 

@@ -36,12 +36,12 @@ struct Symmetric {
 };
 
 /// Returns the second moments about the mean of `count` points, from the sums of the points and of
-/// their products xx xy xz yy yz zz.
+/// their products.
 [[nodiscard]] inline Symmetric moments_about_mean(double count, const Eigen::Vector3d& sum,
-                                                  const double (&products)[6]) noexcept {
-  return {products[0] - sum[0] * (sum[0] / count), products[1] - sum[0] * (sum[1] / count),
-          products[2] - sum[0] * (sum[2] / count), products[3] - sum[1] * (sum[1] / count),
-          products[4] - sum[1] * (sum[2] / count), products[5] - sum[2] * (sum[2] / count)};
+                                                  const Symmetric& products) noexcept {
+  const double x = sum[0] / count, y = sum[1] / count, z = sum[2] / count;
+  return {products.xx - sum[0] * x, products.xy - sum[0] * y, products.xz - sum[0] * z,
+          products.yy - sum[1] * y, products.yz - sum[1] * z, products.zz - sum[2] * z};
 }
 
 /// Returns a unit vector at a right angle to a unit vector.

@@ -32,7 +32,7 @@ double length_of(const Vector3d& v) noexcept { return std::sqrt(dot_in_order(v, 
 struct Spread {
   double count = 0;
   Vector3d sum = Vector3d::Zero();
-  double products[6] = {};  // xx xy xz yy yz zz
+  Symmetric products = {};
 
   void add(const Ball& ball, const Slab& slab) noexcept {
     const Vector3d& n = slab.normal;
@@ -40,19 +40,25 @@ struct Spread {
     const Vector3d p = ist::sum(ball.centre, scaled(square > 0 ? slab.offset / square : 0, n));
     const double moment = 0.5 * ball.radius * ball.radius;
     const double along = square > 0 ? moment / square : 0;
+    const double x = p[0], y = p[1], z = p[2];
     count += 1;
     add_to(sum, p);
-    double* product = products;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      for (Eigen::Index j = i; j < 3; ++j) {
-        *product++ += p[i] * p[j] + ((i == j ? moment : 0) - along * (n[i] * n[j]));
-      }
-    }
+    products.xx += x * x + (moment - along * (n[0] * n[0]));
+    products.xy += x * y - along * (n[0] * n[1]);
+    products.xz += x * z - along * (n[0] * n[2]);
+    products.yy += y * y + (moment - along * (n[1] * n[1]));
+    products.yz += y * z - along * (n[1] * n[2]);
+    products.zz += z * z + (moment - along * (n[2] * n[2]));
   }
   void add(const Spread& other) noexcept {
     count += other.count;
     add_to(sum, other.sum);
-    for (int i = 0; i < 6; ++i) products[i] += other.products[i];
+    products.xx += other.products.xx;
+    products.xy += other.products.xy;
+    products.xz += other.products.xz;
+    products.yy += other.products.yy;
+    products.yz += other.products.yz;
+    products.zz += other.products.zz;
   }
   [[nodiscard]] Vector3d least_axis() const noexcept {
     return ist::least_axis(moments_about_mean(count, sum, products));
@@ -122,16 +128,17 @@ struct Fit {
 PackedSlab thin_slab(const LeafSearch& leaves, const Vector3d& axis, const Vector3d& centre,
                      double pad, double edge) noexcept {
   Fit best(axis);
-  leaves.raise_support(best.normal, centre, best.above);
-  leaves.raise_support(-best.normal, centre, best.below);
+  leaves.raise_support(best.normal, best.length, centre, best.above);
+  leaves.raise_support(-best.normal, best.length, centre, best.below);
   const Vector3d across = best.across();
   const double distance = length_of(across);
   if (distance > 0) {
     const Vector3d tilted = difference(best.normal, scaled(kTilt * best.length / distance, across));
     Fit fit(scaled(1 / length_of(tilted), tilted));
     fit.begin(best, centre);
-    if (fit.width() < best.width()) leaves.raise_support(fit.normal, centre, fit.above);
-    if (fit.width() < best.width()) leaves.raise_support(-fit.normal, centre, fit.below);
+    if (fit.width() < best.width()) leaves.raise_support(fit.normal, fit.length, centre, fit.above);
+    if (fit.width() < best.width())
+      leaves.raise_support(-fit.normal, fit.length, centre, fit.below);
     if (fit.width() < best.width()) best = fit;
   }
   return pack_slab({best.packed, -best.below.value, best.above.value}, pad, edge);

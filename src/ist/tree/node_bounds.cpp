@@ -33,17 +33,22 @@ int up(double value) noexcept {
 }
 
 Vector3d least_spread(std::span<const Vector3d> points) noexcept {
-  Vector3d sum = Vector3d::Zero();
-  double products[6] = {};
-  for (const Vector3d& point : points) {
-    const Vector3d p = difference(point, points[0]);
-    add_to(sum, p);
-    double* product = products;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      for (Eigen::Index j = i; j < 3; ++j) *product++ += p[i] * p[j];
-    }
+  const double ox = points[0][0], oy = points[0][1], oz = points[0][2];
+  double x1 = 0, y1 = 0, z1 = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+  for (const Vector3d& p : points.subspan(1)) {
+    const double x = p[0] - ox, y = p[1] - oy, z = p[2] - oz;
+    x1 += x;
+    y1 += y;
+    z1 += z;
+    xx += x * x;
+    xy += x * y;
+    xz += x * z;
+    yy += y * y;
+    yz += y * z;
+    zz += z * z;
   }
-  return least_axis(moments_about_mean(static_cast<double>(points.size()), sum, products));
+  return least_axis(moments_about_mean(static_cast<double>(points.size()), {x1, y1, z1},
+                                       {xx, xy, xz, yy, yz, zz}));
 }
 
 // Rounds `axis` to a packed normal and measures along it. The axis has length 1 to a few roundings,
@@ -99,7 +104,7 @@ PackedSlab pack_slab(const Extent& extent, double pad, double edge) noexcept {
 
 PackedBall pack_ball(const Payload& payload, const Vector3d& parent_centre,
                      double parent_edge) noexcept {
-  const Vector3d centre = enclosing_ball(payload.points, kTolerance).centre;
+  const Vector3d centre = enclosing_centre(payload.points, kTolerance);
   PackedBall ball = pack_centre(centre, parent_centre, parent_edge);
   const Vector3d rounded = centre_of(ball, parent_centre, parent_edge);
   double farthest2 = 0;
