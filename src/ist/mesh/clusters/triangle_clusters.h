@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "ist/base/progress.h"
 #include "ist/mesh/mesh.h"
 
 namespace ist {
@@ -68,9 +69,10 @@ static_assert(sizeof(TriangleCluster) == 704);
 /// Memory: 48 bytes a triangle. Never changes after it was made.
 class TriangleClusters {
  public:
-  /// Cost: 0.25 µs a triangle and core. The same on every machine. Precondition: the mesh is
-  /// valid.
-  TriangleClusters(const TriangleMesh& mesh, const Eigen::Vector3d& origin);
+  /// Cost: 0.2 µs a triangle and core. The same on every machine, for any number of threads.
+  /// Precondition: the mesh is valid. `progress` may end the call, as Progress says.
+  TriangleClusters(const TriangleMesh& mesh, const Eigen::Vector3d& origin,
+                   const Progress* progress = nullptr);
 
   /// No tree of 32-bit indices has more levels above its clusters.
   static constexpr std::size_t kMostLevels = 8;
