@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -71,10 +72,17 @@ class IST_LOOP_API TreeReader {
   template <typename T>
   std::vector<T> array(std::uint64_t count) {
     static_assert(std::is_trivially_copyable_v<T>);
-    if (count > left_ / sizeof(T)) truncated();
+    require_room(count, sizeof(T));
     std::vector<T> values(count);
     bytes(values.data(), count * sizeof(T));
     return values;
+  }
+  /// Returns points, each of three doubles.
+  std::vector<Eigen::Vector3d> points(std::uint64_t count) {
+    require_room(count, sizeof(Eigen::Vector3d));
+    std::vector<Eigen::Vector3d> points(count);
+    bytes(points.data(), count * sizeof(Eigen::Vector3d));
+    return points;
   }
 
   void verify_checksum() const;
@@ -86,6 +94,9 @@ class IST_LOOP_API TreeReader {
   void read_preamble();
   std::size_t take(void* data, std::size_t count);
   void bytes(void* data, std::uint64_t count);
+  void require_room(std::uint64_t count, std::size_t bytes) const {
+    if (count > left_ / bytes) truncated();
+  }
   [[noreturn]] void truncated() const;
   [[noreturn]] void corrupt(const char* what) const;
   [[noreturn]] void fail(ErrorCode code, const std::string& what) const;

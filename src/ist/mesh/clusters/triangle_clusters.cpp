@@ -2,7 +2,9 @@
 
 #include <array>
 #include <limits>
+#include <utility>
 
+#include "ist/base/assert.h"
 #include "ist/base/ordered_vector.h"
 #include "ist/base/parallel.h"
 #include "ist/base/symmetric_eigen.h"
@@ -288,6 +290,7 @@ TriangleCluster cluster_of(const ClusterCorners& corners, Points points, Ids ids
     }
   }
   for (std::size_t k = 0; k < kClusterWidth; ++k) cluster.id[k] = ids[std::min(k, ids.size() - 1)];
+  cluster.zero = 0;
   return cluster;
 }
 
@@ -302,8 +305,6 @@ struct VertexLists {
   }
 };
 
-std::uint32_t up(std::uint32_t count) { return (count + kClusterWidth - 1) / kClusterWidth; }
-
 }  // namespace
 
 std::vector<std::uint32_t> triangle_order(std::span<const Eigen::Vector3d> corners) {
@@ -317,10 +318,9 @@ std::vector<std::uint32_t> triangle_order(std::span<const Eigen::Vector3d> corne
 
 TriangleClusters::TriangleClusters(const TriangleMesh& mesh, const Vector& origin,
                                    const Progress* progress)
-    : origin_(origin), triangle_count_(static_cast<std::uint32_t>(mesh.triangles.size())) {
-  counts_.push_back(up(triangle_count_));
-  while (counts_.back() > 1 || counts_.size() < 2) counts_.push_back(up(counts_.back()));
-
+    : origin_(origin),
+      triangle_count_(static_cast<std::uint32_t>(mesh.triangles.size())),
+      counts_(node_counts(triangle_count_)) {
   Moments whole;
   for (const Triangle& triangle : mesh.triangles) {
     for (const std::uint32_t v : triangle) whole.add(difference(mesh.vertices[v], origin));
@@ -354,7 +354,7 @@ TriangleClusters::TriangleClusters(const TriangleMesh& mesh, const Vector& origi
   items = {};
 
   clusters_.resize(counts_[0]);
-  for (const std::uint32_t count : counts_) levels_.emplace_back(up(count));
+  for (const std::uint32_t count : counts_) levels_.emplace_back(block_count(count));
   std::vector<Moments> below(counts_[0]);
   std::vector<VertexLists> lists((counts_[0] + kGrain - 1) / kGrain);
   parallel_for(counts_[0], kGrain, [&](std::size_t begin, std::size_t end) {
@@ -402,6 +402,26 @@ TriangleClusters::TriangleClusters(const TriangleMesh& mesh, const Vector& origi
     });
     below = std::move(moments);
   }
+}
+
+TriangleClusters::TriangleClusters(std::uint32_t triangles, const Vector& origin,
+                                   const Eigen::Matrix3d& axes, double grid,
+                                   std::vector<std::vector<NodeBlock>> levels,
+                                   std::vector<TriangleCluster> clusters)
+    : origin_(origin),
+      axes_(axes),
+      grid_(grid),
+      triangle_count_(triangles),
+      counts_(node_counts(triangles)),
+      levels_(std::move(levels)),
+      clusters_(std::move(clusters)) {
+  IST_ASSERT(levels_.size() == counts_.size() && clusters_.size() == counts_[0]);
+}
+
+std::vector<std::uint32_t> TriangleClusters::node_counts(std::uint32_t triangles) {
+  std::vector<std::uint32_t> counts = {block_count(triangles)};
+  while (counts.back() > 1 || counts.size() < 2) counts.push_back(block_count(counts.back()));
+  return counts;
 }
 
 std::size_t TriangleClusters::bytes() const noexcept {
