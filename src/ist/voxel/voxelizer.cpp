@@ -54,8 +54,12 @@ void for_each_voxel(const TriangleBox& triangle, const Cell& block, const Lattic
   const double pad = inner_pad(lattice);
   const Eigen::Vector3d low = triangle.min().array() - 1 - pad;
   const Eigen::Vector3d high = (triangle.max().array() + pad).min(lattice.cells - 1.0);
-  for_each_cell(block, low, high, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-    if (triangle.meets_within_bounds(x + 0.5, y + 0.5, z + 0.5, 0.5 + pad))
+  const double half = 0.5 + pad;
+  const auto enter = [&](std::uint32_t x, std::uint32_t y) {
+    return triangle.meets_column(x + 0.5, y + 0.5, half);
+  };
+  for_each_cell(block, low, high, enter, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    if (triangle.meets_in_column(x + 0.5, y + 0.5, z + 0.5, half))
       visit(static_cast<BlockCell>((x & 15) | (y & 15) << 4 | (z & 15) << 8));
   });
 }
