@@ -33,7 +33,7 @@ constexpr std::uint64_t kSlabBytes = bytes_a_leaf(sizeof(SlabBlock) + kNestingBy
 // closed surface is put into clusters too.
 constexpr std::uint64_t kProximityBytes = 3 * 2 * sizeof(std::uint64_t);
 constexpr std::uint64_t kPseudoNormalBytes = 256;
-// A triangle in clusters, with its corners twice while they are ordered.
+// A triangle in clusters, with vertices of its own, moved and then listed, while they are made.
 constexpr std::uint64_t kClusterBytes = 224;
 
 VoxelizerOptions voxelizer_options(const BuildOptions& options) {
@@ -173,7 +173,9 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
   }
   if (options.keep_triangles) {
     const Eigen::Vector3d origin = parts.voxels ? parts.voxels->lattice.origin() : middle_of(mesh);
-    parts.triangles.emplace(std::move(mesh), origin);
+    stages.begin("putting triangles into clusters");
+    TriangleClusters clusters(mesh, origin, progress);
+    parts.triangles.emplace(std::move(mesh), std::move(clusters));
     stages.end("triangle clusters");
   }
   return tree_from(std::move(parts));
