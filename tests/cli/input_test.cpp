@@ -86,10 +86,10 @@ TEST_F(Input, TreesThatAreBroken) {
 
 TEST_F(Input, TreesOfAnotherVersionAreRefusedWithTheRemedy) {
   std::string older = file_content(ball_tree());
-  older[8] = 3;
+  older[8] = 4;
   const std::string file = write("older.ist", older);
   const std::string why =
-      "it is of version 3, and this program reads versions 4 to 5: build it again from the mesh";
+      "it is of version 4, and this program reads version 5: build it again from the mesh";
   refuses({"info", file}, file, why);
   refuses({"collide", file, ball(), "--poses", poses({0})}, file, why);
 }

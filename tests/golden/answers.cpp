@@ -203,10 +203,10 @@ std::uint64_t hash_occlusion(const std::string& target) {
 
 constexpr std::array kAnswers = {
     GoldenAnswers{"mesh file", 0xc0542f7b2473c8ba, hash_mesh_file},
-    GoldenAnswers{"tree files", 0x819b49ce590235bb, hash_tree_file},
-    GoldenAnswers{"leaf pairs and tests", 0xa1b74d67a21f215f, hash_leaf_pairs},
-    GoldenAnswers{"coherent ticks", 0x2f3330b094992a5c, hash_coherent_ticks},
-    GoldenAnswers{"contacts and sums", 0xbdbf09ba4a0bc60a, hash_contacts},
+    GoldenAnswers{"tree files", 0xf5d2a9ee2adff184, hash_tree_file},
+    GoldenAnswers{"leaf pairs and tests", 0x924b5bda8f1fa5e1, hash_leaf_pairs},
+    GoldenAnswers{"coherent ticks", 0xd704caff42bef0a4, hash_coherent_ticks},
+    GoldenAnswers{"contacts and sums", 0xf800fbf00066d2c0, hash_contacts},
     GoldenAnswers{"distances", 0xe47c88ee01fc4669, hash_distances},
     GoldenAnswers{"triangle pairs", 0xf4fb385f0075206d, hash_triangle_pairs},
     GoldenAnswers{"penetration depths", 0x2adc10e0063bd7f3, hash_depths},

@@ -12,19 +12,19 @@ namespace {
 // By policy.
 using Hashes = std::array<std::uint64_t, 4>;
 constexpr Hashes kGoldenJaws = {0x84188b65e9d43672, 0xba6c1db36d1f2b1a, 0x6255484a34863d2f,
-                                0xf4e238af84015924};
+                                0xf20f8d7acc2a2038};
 constexpr Hashes kGoldenSolids[3] = {
     {
         0x1d333c6a0c3550e7,
         0x8fcd6e73e17653e9,
         0xdb5145f02d8d2e6e,
-        0x61d8f6ada9403259,
+        0x9b089d7da09f2978,
     },
     {
         0x91e1c3add1ddd5e9,
         0x00b0a29b3dd5849c,
         0xc940ca98685ae848,
-        0x08114781fdae1de2,
+        0x1f365a334ebe0f6a,
     },
     {
         0x8ca386835396f93c,

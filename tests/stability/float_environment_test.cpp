@@ -92,11 +92,10 @@ TEST_P(FloatEnvironmentOfTheCaller, ChangesNoVoxel) {
 }
 
 TEST_P(FloatEnvironmentOfTheCaller, ChangesNoBound) {
-  const VoxelizerOptions options{.voxel_size = 0.1 * unit_, .keep_triangles = true};
-  const VoxelSet voxels = voxelize(meshes_.a, options);
-  const LinearOctree octree(voxels.codes, voxels.lattice.depth);
-  changes_nothing("build_bounds", 1000, [&](Record& record) {
-    const BoundBlocks bounds = build_bounds(SpherePolicy::kTight, meshes_.a, voxels, octree);
+  changes_nothing("BoundBuilder", 1000, [&](Record& record) {
+    BoundBuilder builder(SpherePolicy::kTight);
+    const VoxelSet voxels = voxelize(meshes_.a, {.voxel_size = 0.1 * unit_, .visitor = &builder});
+    const BoundBlocks bounds = builder.finish(LinearOctree(voxels.codes, voxels.lattice.depth));
     for (const BallBlock& block : bounds.balls.front()) {
       for (const std::uint16_t radius : block.r) record.add(radius);
     }

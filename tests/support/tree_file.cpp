@@ -31,8 +31,18 @@ TreeFile::TreeFile(const SphereTree& tree) : bytes(file_of(tree)) {
   list_ids = list_begins + 4 * (leaf_count + 1);
   proximity_depth = list_ids + 4 * lists.ids.size();
   proximity_nodes = proximity_depth + 4;
-  const std::size_t end =
+  axes =
       octree(proximity_nodes, voxels_of(tree).proximity->octree, proximity_leaves, proximity_masks);
+  blocks = axes + std::size_t{8} * (9 + 1);
+  // The clusters' bounds, and those of each level above, of which the last is one node.
+  std::size_t of_level = (mesh.triangles.size() + 15) / 16, levels = 1;
+  const std::size_t cluster_count = of_level;
+  clusters = blocks + 832 * ((of_level + 15) / 16);
+  for (; of_level > 1 || levels < 2; ++levels) {
+    of_level = (of_level + 15) / 16;
+    clusters += 832 * ((of_level + 15) / 16);
+  }
+  const std::size_t end = clusters + 704 * cluster_count;
   if (end != bytes.size()) throw std::logic_error("the file is not as its format is described");
 }
 

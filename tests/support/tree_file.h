@@ -26,7 +26,8 @@ class TreeFile {
   std::string bytes;
   /// Of the arrays, in the order of the file. Nodes of the octree begin with those at level 1.
   std::size_t nodes, leaves, masks, normals, balls, slabs, counts, vertices, triangles, list_begins,
-      list_ids, proximity_depth, proximity_nodes, proximity_leaves, proximity_masks;
+      list_ids, proximity_depth, proximity_nodes, proximity_leaves, proximity_masks, axes, blocks,
+      clusters;
 
   template <typename T>
   [[nodiscard]] T get(std::size_t offset) const {

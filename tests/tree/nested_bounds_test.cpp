@@ -165,10 +165,11 @@ TEST(InflatedBound, SupportsAreExactToAFewRoundings) {
 
 struct BuiltTree {
   explicit BuiltTree(const TriangleMesh& mesh, double voxel_size)
-      : voxels(voxelize(mesh, {voxel_size, true})),
+      : voxels(voxelize(mesh, {.voxel_size = voxel_size, .visitor = &builder})),
         octree(voxels.codes, voxels.lattice.depth),
-        bounds(build_bounds(SpherePolicy::kSlab, mesh, voxels, octree)) {}
+        bounds(builder.finish(octree)) {}
 
+  BoundBuilder builder{SpherePolicy::kSlab};
   VoxelSet voxels;
   LinearOctree octree;
   BoundBlocks bounds;
@@ -216,11 +217,11 @@ TEST(LeafSearch, FindsTheGreatestOfAllLeaves) {
       }
       ASSERT_NEAR(search.farthest(from).value, farthest, 1e-14 * farthest);
       Greatest<InflatedBound> greatest;
-      search.raise_support(normal, from, greatest);
+      search.raise_support(normal, length, from, greatest);
       ASSERT_EQ(greatest.value, highest);
       ASSERT_EQ(height_of(greatest.bound, normal, length, from), highest);
       greatest.value = highest + 1;  // the search keeps a greater value
-      search.raise_support(normal, from, greatest);
+      search.raise_support(normal, length, from, greatest);
       ASSERT_EQ(greatest.value, highest + 1);
     }
   }
@@ -234,9 +235,10 @@ using test::ExactPoint;
 class Nested {
  public:
   Nested(const TriangleMesh& mesh, double voxel_size, SpherePolicy policy = SpherePolicy::kSlab)
-      : voxels_(voxelize(mesh, {voxel_size, true})),
+      : builder_(policy),
+        voxels_(voxelize(mesh, {.voxel_size = voxel_size, .visitor = &builder_})),
         octree_(voxels_.codes, voxels_.lattice.depth),
-        bounds_(build_bounds(policy, mesh, voxels_, octree_)) {
+        bounds_(builder_.finish(octree_)) {
     for (std::uint32_t node = 0; node < octree_.leaf_count(); ++node) {
       leaves_.push_back(bound(0, node));
     }
@@ -272,6 +274,7 @@ class Nested {
   }
 
  private:
+  BoundBuilder builder_;
   VoxelSet voxels_;
   LinearOctree octree_;
   BoundBlocks bounds_;

@@ -180,6 +180,20 @@ const std::vector<Damage>& damages() {
       put("ProximityMaskZero", &F::proximity_masks, 0, std::uint8_t{0}),
       add("ProximityLeafCountWrong", &F::proximity_leaves, 0, 1u),
       put("ProximityNodeCountHuge", &F::proximity_nodes, 0, kMany, "tree-truncated"),
+      put("AxisOfClustersNaN", &F::axes, 0, kNaN),
+      put("AxisOfClustersTooLong", &F::axes, 64, -1.01),
+      put("GridZero", &F::axes, 72, 0.0),
+      put("GridNegative", &F::axes, 72, -0.5),
+      put("GridInfinite", &F::axes, 72, kInfinity),
+      put("GridNoPowerOfTwo", &F::axes, 72, 0.75),
+      put("BoundOfAClusterNaN", &F::blocks, 0, std::numeric_limits<float>::quiet_NaN()),
+      put("BoundOfTheRootInfinite", &F::clusters, static_cast<std::size_t>(-64),
+          std::numeric_limits<float>::infinity()),
+      put("CornerOfAClusterNaN", &F::clusters, 0, std::numeric_limits<float>::quiet_NaN()),
+      put("ClusterNamesATriangleThatIsNotThere", &F::clusters, 576, 12u),
+      put("AxisOfAClusterInfinite", &F::clusters, 640, -std::numeric_limits<float>::infinity()),
+      put("RangeOfAClusterNaN", &F::clusters, 676, std::numeric_limits<float>::quiet_NaN()),
+      put("BytesBehindACluster", &F::clusters, 700, 1u),
   };
   return all;
 }
@@ -201,17 +215,18 @@ TEST(DamagedTree, EachFieldOfThePreambleHasAnErrorOfItsOwn) {
   EXPECT_EQ(with(TreeFile::kChecksum, std::uint64_t{0}), "tree-corrupt");
 }
 
-// Files of version 3 have no source.
+// Files of version 4 have no clusters.
 TEST(DamagedTree, OfAnEarlierVersionIsRefusedWithTheRemedy) {
   TreeFile file = small_file();
-  file.put(TreeFile::kVersion, 3u);
+  file.put(TreeFile::kVersion, 4u);
   const auto error = test::error_of([&] { (void)test::tree_of_bytes(file.bytes); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kTreeVersion);
   const std::string what = error->what();
-  EXPECT_NE(what.find("it is of version 3, and this program reads versions 4 to 5: build it again "
-                      "from the mesh"),
-            std::string::npos)
+  EXPECT_NE(
+      what.find(
+          "it is of version 4, and this program reads version 5: build it again from the mesh"),
+      std::string::npos)
       << what;
 }
 
@@ -280,7 +295,8 @@ struct FileWithoutVoxels {
     return damaged;
   }
   static constexpr std::size_t kCounts = TreeFile::kName, kVertices = kCounts + 24,
-                               kTriangles = kVertices + 8 * 24, kEnd = kTriangles + 12 * 12;
+                               kTriangles = kVertices + 8 * 24, kClusters = kTriangles + 12 * 12,
+                               kEnd = kClusters + 80 + 2 * 832 + 704;
   std::string bytes;
 };
 
@@ -318,12 +334,14 @@ TEST(DamagedTree, WithoutVoxelsEachFieldIsChecked) {
   EXPECT_NE(error_of_bytes(file.with(TreeFile::kCells, 1u)), "none");
   expect_corrupt(file.with(TreeFile::kDepth, 1u), "depth");
   expect_corrupt(file.with(TreeFile::kOrientation, 7u), "orientation");
-  for (const std::uint32_t sections : {0u, 1u, 3u, 6u, 15u, 18u, 34u}) {
+  for (const std::uint32_t sections : {0u, 1u, 3u, 6u, 15u, 34u}) {
     expect_corrupt(file.with(TreeFile::kSections, sections), "sections");
   }
   expect_corrupt(file.with(FileWithoutVoxels::kVertices, kNaN), "vertex");
   expect_corrupt(file.with(FileWithoutVoxels::kVertices, 1e300), "extent");
   expect_corrupt(file.with(FileWithoutVoxels::kTriangles, 8u), "index");
+  expect_corrupt(file.with(FileWithoutVoxels::kClusters, kNaN), "axes");
+  expect_corrupt(file.with(FileWithoutVoxels::kEnd - 128, 12u), "triangle of a cluster");
   std::string flat = file.bytes;
   std::fill(flat.begin() + FileWithoutVoxels::kVertices,
             flat.begin() + FileWithoutVoxels::kTriangles, '\0');

@@ -202,7 +202,7 @@ TEST(TreeFile, IsNeitherReadNorWrittenWhereItsThreadIsAskedToEnd) {
 
 TEST(TreeFile, BeginsAsItsDescriptionSays) {
   const std::string bytes = test::file_of(tree_of(test::icosphere(1, 1), 0.3, 15));
-  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89IST\r\n\x1A\n\4\0\0\0\4\3\2\1", 16));
+  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89IST\r\n\x1A\n\5\0\0\0\4\3\2\1", 16));
 }
 
 TEST(TreeFile, IsKnownByItsBeginning) {

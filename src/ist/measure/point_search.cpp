@@ -297,6 +297,8 @@ std::optional<NearestTriangle> PointSearch::nearest(
   Descent descent(*this, point, within);
   if (hint) descent.measure(*hint);
   descent.run();
+  // Clusters of a file that no library wrote may hide all triangles.
+  if (!descent.best() && within == HUGE_VAL) descent.measure(0);
   return descent.best();
 }
 

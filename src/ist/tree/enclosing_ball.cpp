@@ -1,6 +1,7 @@
 #include "ist/tree/enclosing_ball.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -15,7 +16,11 @@ using Eigen::Vector3d;
 
 constexpr int kMaxPasses = 64;
 
-double square(const Vector3d& v) noexcept { return (v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]; }
+double square(const Vector3d& v) noexcept { return square_in_order(v); }
+
+// The sets of 0, 1, 2 and 3 of four sites, as bits; 16 ends a row.
+constexpr unsigned kSets[4][7] = {
+    {0, 16}, {1, 2, 4, 8, 16}, {3, 5, 6, 9, 10, 12, 16}, {7, 11, 13, 14, 16}};
 
 struct Farthest {
   std::size_t index;
@@ -27,8 +32,10 @@ Farthest farthest_from(std::span<const Vector3d> points, const Vector3d& origin,
                        const Vector3d& centre) noexcept {
   Farthest farthest{0, -1};
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const double distance2 = square((points[i] - origin) - centre);
-    if (distance2 > farthest.distance2) farthest = {i, distance2};
+    const double distance2 = square(difference(difference(points[i], origin), centre));
+    const bool is_farther = distance2 > farthest.distance2;
+    farthest.index = is_farther ? i : farthest.index;
+    farthest.distance2 = is_farther ? distance2 : farthest.distance2;
   }
   return farthest;
 }
@@ -58,6 +65,10 @@ double size_to(const Ball& ball, const Vector3d& centre) noexcept {
 // and holds no other point, so the caller skips it.
 Sized touching(const Vector3d* const points[4], int count) noexcept {
   const Vector3d& p = *points[0];
+  if (count == 2) {
+    const Vector3d half = scaled(0.5, difference(*points[1], p));
+    return {sum(p, half), square(half)};
+  }
   Vector3d d[3];
   double squares[3];
   for (int i = 1; i < count; ++i) {
@@ -94,38 +105,44 @@ Sized touching(const Ball* const balls[4], int count) noexcept {
 template <typename Site>
 bool extend(Support<Site>& support, const Site& site) noexcept {
   constexpr double kSlack = 1 + 1e-12;
-  Support<Site> best;
-  best.size = std::numeric_limits<double>::infinity();
+  const unsigned sets = 1u << support.count;
+  Sized best{{}, std::numeric_limits<double>::infinity()};
+  unsigned chosen = sets;
   for (int others = std::is_same_v<Site, Ball> ? 0 : 1; others <= 3; ++others) {
-    for (unsigned chosen = 0; chosen < 1u << support.count; ++chosen) {
-      if (__builtin_popcount(chosen) != others) continue;
-      const Site* set[4] = {&site};
+    for (const unsigned* set = kSets[others]; *set < sets; ++set) {
+      const Site* sites[4] = {&site};
       int count = 1;
       for (int i = 0; i < support.count; ++i) {
-        if ((chosen >> i & 1) != 0) set[count++] = &support.sites[i];
+        if ((*set >> i & 1) != 0) sites[count++] = &support.sites[i];
       }
-      const auto [centre, size] = touching(set, count);
-      if (!(size < best.size)) continue;
+      const Sized ball = touching(sites, count);
+      if (!(ball.size < best.size)) continue;
       bool holds_all = true;
       for (int i = 0; i < support.count && holds_all; ++i) {
-        holds_all = size_to(support.sites[i], centre) <= size * kSlack;
+        holds_all = size_to(support.sites[i], ball.centre) <= ball.size * kSlack;
       }
       if (!holds_all) continue;
-      best.centre = centre;
-      best.size = size;
-      best.count = count;
-      for (int i = 0; i < count; ++i) best.sites[i] = *set[i];
+      best = ball;
+      chosen = *set;
     }
-    if (best.count > 0 && others < 2) break;  // no ball that more of them touch is smaller
+    if (chosen < sets && others < 2) break;  // no ball that more of them touch is smaller
   }
-  if (best.count == 0) return false;
-  support = best;
+  if (chosen == sets) return false;
+  Site kept[4] = {site};
+  int count = 1;
+  for (int i = 0; i < support.count; ++i) {
+    if ((chosen >> i & 1) != 0) kept[count++] = support.sites[i];
+  }
+  std::copy(kept, kept + count, support.sites);
+  support.count = count;
+  support.centre = best.centre;
+  support.size = best.size;
   return true;
 }
 
 }  // namespace
 
-Ball enclosing_ball(std::span<const Vector3d> points, double tolerance) noexcept {
+Vector3d enclosing_centre(std::span<const Vector3d> points, double tolerance) noexcept {
   IST_ASSERT(!points.empty());
   // Coordinates are relative to one of the points, so that a small ball far out rounds like one at
   // the origin.
@@ -149,8 +166,12 @@ Ball enclosing_ball(std::span<const Vector3d> points, double tolerance) noexcept
       least = outside.distance2;
     }
   }
-  centre += origin;
-  return {centre, std::sqrt(farthest_from(points, centre, zero).distance2)};
+  return sum(centre, origin);
+}
+
+Ball enclosing_ball(std::span<const Vector3d> points, double tolerance) noexcept {
+  const Vector3d centre = enclosing_centre(points, tolerance);
+  return {centre, std::sqrt(farthest_from(points, centre, Vector3d::Zero()).distance2)};
 }
 
 bool take_in(Support<Ball>& support, const Ball& ball) noexcept { return extend(support, ball); }

@@ -19,6 +19,9 @@ namespace ist {
 /// Source: B. Gärtner, Fast and robust smallest enclosing balls, ESA 1999 (the pivoting variant).
 [[nodiscard]] Ball enclosing_ball(std::span<const Eigen::Vector3d> points,
                                   double tolerance) noexcept;
+/// Returns the centre of that sphere.
+[[nodiscard]] Eigen::Vector3d enclosing_centre(std::span<const Eigen::Vector3d> points,
+                                               double tolerance) noexcept;
 
 /// The smallest ball round a set of points or balls, and those of them that determine it.
 template <typename Site>

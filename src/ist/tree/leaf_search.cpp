@@ -22,6 +22,7 @@ InflatedBound::InflatedBound(const Ball& ball, const Slab& slab, double partner_
       normal_(slab.normal),
       radius_(ball.radius + partner_radius),
       square_(dot_in_order(normal_, normal_)),
+      inverse_(1 / square_),
       above_(cut(slab.half + slab.offset + partner_radius)),
       below_(cut(slab.half - slab.offset + partner_radius)) {}
 
@@ -39,7 +40,7 @@ double InflatedBound::support(const Vector3d& normal, double length,
   const Cut& face = up ? above_ : below_;
   const double across2 = dot_in_order(normal, normal) * square_ - along * along;
   return centre +
-         ((up ? along : -along) * face.height + std::sqrt(across2 * face.radius2)) / square_;
+         ((up ? along : -along) * face.height + std::sqrt(across2 * face.radius2)) * inverse_;
 }
 
 Vector3d InflatedBound::support_point(const Vector3d& normal, double length) const noexcept {
@@ -51,7 +52,7 @@ Vector3d InflatedBound::support_point(const Vector3d& normal, double length) con
   const Cut& face = up ? above_ : below_;
   const double across2 = dot_in_order(normal, normal) * square_ - along * along;
   const double out = across2 > 0 ? std::sqrt(face.radius2 / across2) : 0;
-  const double lift = (up ? face.height : -face.height) / square_ - out * along / square_;
+  const double lift = ((up ? face.height : -face.height) - out * along) * inverse_;
   return sum(centre_, sum(scaled(lift, normal_), scaled(out, normal)));
 }
 
@@ -129,9 +130,8 @@ Greatest<Ball> LeafSearch::farthest(const Vector3d& from) const noexcept {
   return greatest;
 }
 
-void LeafSearch::raise_support(const Vector3d& normal, const Vector3d& from,
+void LeafSearch::raise_support(const Vector3d& normal, double length, const Vector3d& from,
                                Greatest<InflatedBound>& greatest) const noexcept {
-  const double length = std::sqrt(dot_in_order(normal, normal));
   const auto height = [&](const InflatedBound& bound) {
     return height_of(bound, normal, length, from);
   };

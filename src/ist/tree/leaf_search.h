@@ -34,7 +34,7 @@ class InflatedBound {
   [[nodiscard]] Cut cut(double height) const noexcept;
 
   Eigen::Vector3d centre_, normal_;
-  double radius_ = 0, square_ = 0;  // square_ is the normal's
+  double radius_ = 0, square_ = 0, inverse_ = 0;  // square_ is the normal's, 1 / inverse_
   Cut above_, below_;
 };
 
@@ -65,8 +65,8 @@ class LeafSearch {
 
   /// Raises `greatest` to the leaf that extends farthest along a normal with kPartnerRadius, from a
   /// point, less the partner radius times the normal's length: no smaller partner radius extends
-  /// farther than that.
-  void raise_support(const Eigen::Vector3d& normal, const Eigen::Vector3d& from,
+  /// farther than that. `length` is the normal's.
+  void raise_support(const Eigen::Vector3d& normal, double length, const Eigen::Vector3d& from,
                      Greatest<InflatedBound>& greatest) const noexcept;
 
  private:

@@ -10,6 +10,7 @@
 #include "ist/base/parallel.h"
 #include "ist/tree/enclosing_ball.h"
 #include "ist/tree/leaf_search.h"
+#include "ist/tree/least_axis.h"
 #include "ist/tree/node_bounds.h"
 
 namespace ist {
@@ -21,39 +22,17 @@ constexpr std::size_t kGrain = 128;
 // The part of itself by which a radius may exceed the smallest.
 constexpr double kLooseness = 0.005;
 constexpr int kMaxRounds = 64;
-// The tilts that are tried for a thinner slab, and the first of them. A tilt that does not pay
-// halves the next.
-constexpr int kTilts = 4;
-constexpr double kFirstTilt = 0x1p-4;
+// The tilt that is tried for a thinner slab.
+constexpr double kTilt = 0x1p-4;
 
 double length_of(const Vector3d& v) noexcept { return std::sqrt(dot_in_order(v, v)); }
-
-// A symmetric matrix.
-struct Symmetric {
-  double xx, xy, xz, yy, yz, zz;
-
-  // The square, divided by that of the trace.
-  [[nodiscard]] Symmetric squared() const noexcept {
-    const double s = 1 / ((xx + yy) + zz);
-    const double a = s * xx, b = s * xy, c = s * xz, d = s * yy, e = s * yz, f = s * zz;
-    return {(a * a + b * b) + c * c, (a * b + b * d) + c * e, (a * c + b * e) + c * f,
-            (b * b + d * d) + e * e, (b * c + d * e) + e * f, (c * c + e * e) + f * f};
-  }
-  [[nodiscard]] Vector3d longest_column() const noexcept {
-    Vector3d column(xx, xy, xz);
-    if (yy > xx && yy >= zz) column = {xy, yy, yz};
-    if (zz > xx && zz > yy) column = {xz, yz, zz};
-    const double length = length_of(column);
-    return length > 0 ? Vector3d(column / length) : Vector3d(0, 0, 1);
-  }
-};
 
 // The spread of the circles in which the leaves' slabs halve their balls: sums over the circles of
 // their points' first and second moments. A circle has radius²/2 along each axis in its plane.
 struct Spread {
   double count = 0;
   Vector3d sum = Vector3d::Zero();
-  double products[6] = {};  // xx xy xz yy yz zz
+  Symmetric products = {};
 
   void add(const Ball& ball, const Slab& slab) noexcept {
     const Vector3d& n = slab.normal;
@@ -61,34 +40,28 @@ struct Spread {
     const Vector3d p = ist::sum(ball.centre, scaled(square > 0 ? slab.offset / square : 0, n));
     const double moment = 0.5 * ball.radius * ball.radius;
     const double along = square > 0 ? moment / square : 0;
+    const double x = p[0], y = p[1], z = p[2];
     count += 1;
     add_to(sum, p);
-    double* product = products;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      for (Eigen::Index j = i; j < 3; ++j) {
-        *product++ += p[i] * p[j] + ((i == j ? moment : 0) - along * (n[i] * n[j]));
-      }
-    }
+    products.xx += x * x + (moment - along * (n[0] * n[0]));
+    products.xy += x * y - along * (n[0] * n[1]);
+    products.xz += x * z - along * (n[0] * n[2]);
+    products.yy += y * y + (moment - along * (n[1] * n[1]));
+    products.yz += y * z - along * (n[1] * n[2]);
+    products.zz += z * z + (moment - along * (n[2] * n[2]));
   }
   void add(const Spread& other) noexcept {
     count += other.count;
     add_to(sum, other.sum);
-    for (int i = 0; i < 6; ++i) products[i] += other.products[i];
+    products.xx += other.products.xx;
+    products.xy += other.products.xy;
+    products.xz += other.products.xz;
+    products.yy += other.products.yy;
+    products.yz += other.products.yz;
+    products.zz += other.products.zz;
   }
-  // Returns the unit axis along which the circles spread least, or one close to it where two hardly
-  // differ: the inverse of the matrix of second moments has its longest axis there, and its powers
-  // are longer still.
   [[nodiscard]] Vector3d least_axis() const noexcept {
-    const double xx = products[0] - sum[0] * (sum[0] / count),
-                 xy = products[1] - sum[0] * (sum[1] / count),
-                 xz = products[2] - sum[0] * (sum[2] / count),
-                 yy = products[3] - sum[1] * (sum[1] / count),
-                 yz = products[4] - sum[1] * (sum[2] / count),
-                 zz = products[5] - sum[2] * (sum[2] / count);
-    Symmetric power{yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy,
-                    xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy};
-    for (int i = 0; i < 3; ++i) power = power.squared();
-    return power.longest_column();
+    return ist::least_axis(moments_about_mean(count, sum, products));
   }
 };
 
@@ -155,23 +128,18 @@ struct Fit {
 PackedSlab thin_slab(const LeafSearch& leaves, const Vector3d& axis, const Vector3d& centre,
                      double pad, double edge) noexcept {
   Fit best(axis);
-  leaves.raise_support(best.normal, centre, best.above);
-  leaves.raise_support(-best.normal, centre, best.below);
-  double tilt = kFirstTilt;
-  for (int i = 0; i < kTilts; ++i) {
-    const Vector3d across = best.across();
-    const double distance = length_of(across);
-    if (!(distance > 0)) break;
-    const Vector3d tilted = difference(best.normal, scaled(tilt * best.length / distance, across));
+  leaves.raise_support(best.normal, best.length, centre, best.above);
+  leaves.raise_support(-best.normal, best.length, centre, best.below);
+  const Vector3d across = best.across();
+  const double distance = length_of(across);
+  if (distance > 0) {
+    const Vector3d tilted = difference(best.normal, scaled(kTilt * best.length / distance, across));
     Fit fit(scaled(1 / length_of(tilted), tilted));
     fit.begin(best, centre);
-    if (fit.width() < best.width()) leaves.raise_support(fit.normal, centre, fit.above);
-    if (fit.width() < best.width()) leaves.raise_support(-fit.normal, centre, fit.below);
-    if (fit.width() < best.width()) {
-      best = fit;
-    } else {
-      tilt *= 0.5;
-    }
+    if (fit.width() < best.width()) leaves.raise_support(fit.normal, fit.length, centre, fit.above);
+    if (fit.width() < best.width())
+      leaves.raise_support(-fit.normal, fit.length, centre, fit.below);
+    if (fit.width() < best.width()) best = fit;
   }
   return pack_slab({best.packed, -best.below.value, best.above.value}, pad, edge);
 }

@@ -31,9 +31,9 @@ inline constexpr std::uint64_t kNestingBytes = 80;
 /// Fits the bounds of all nodes above the leaves from the leaves' bounds, as they are packed.
 ///  - A ball holds the balls of all its leaves. Its radius exceeds the smallest by at most 0.5 %,
 ///    and by the rounding.
-///  - A slab is nested for kPartnerRadius. Its normal begins with the axis along which the circles
-///  spread
-///    least in which the leaves' slabs halve their balls, and climbs to where the slab is thinner.
+///  - A slab is nested for kPartnerRadius. The leaves' slabs halve their balls in circles. The
+///    normal is the axis along which these circles spread least, tilted once if that makes the slab
+///    thinner.
 ///
 /// @param pad    a bound of the arithmetic's errors: 2^-48 of the root cube's edge, voxels
 /// @param bounds with the leaves fitted, and one empty array for each level above; filled in

@@ -2,9 +2,9 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <vector>
 
 #include "ist/tree/bound_blocks.h"
+#include "ist/voxel/payload.h"
 
 namespace ist {
 
@@ -40,14 +40,6 @@ struct Extent {
 /// @param edge of the node's cube, lattice units
 [[nodiscard]] PackedSlab pack_slab(const Extent& extent, double pad, double edge) noexcept;
 
-/// The geometry that a leaf's bounds must hold, in lattice units.
-struct Payload {
-  std::vector<Eigen::Vector3d> points;  ///< their convex hull holds the geometry; at least one
-  Eigen::Vector3d area;                 ///< sum of the pieces' vector areas, up to a factor
-  /// A bound of the points' errors, half of it reserved for the arithmetic of these functions.
-  double pad;
-};
-
 /// Packs a ball round a payload: rounds the centre, and measures the radius from there. The radius
 /// exceeds the smallest by at most 1 % and the rounding: 3 units, and twice the distance by which
 /// the payload leaves the parent's cube.
@@ -58,7 +50,7 @@ struct Payload {
 
 /// Packs a thin slab round a payload. The normal is the axis of the points' least spread or the
 /// direction of the payload's area, whichever gives the thinner slab, rounded to its block; the
-/// width is measured along the rounded normal.
+/// width is measured along the rounded normal. A flat payload has the direction of its area.
 ///
 /// @param centre of the node's packed ball
 /// @param edge   of the node's cube, lattice units

@@ -1,6 +1,7 @@
 #include "ist/tree/proximity_body.h"
 
-#include <numeric>
+#include <span>
+#include <vector>
 
 #include "ist/base/assert.h"
 #include "ist/base/float_environment.h"
@@ -21,37 +22,29 @@ Lattice lattice_of_cells(const SphereTree& tree) {
   return lattice;
 }
 
-// Gives each cell a degenerate triangle at its centre.
-TriangleMesh centres_of(VoxelSet& voxels) {
-  TriangleMesh mesh;
-  const double size = voxels.lattice.voxel_size;
-  for (const std::uint64_t code : voxels.codes) {
-    const auto vertex = static_cast<std::uint32_t>(mesh.vertices.size());
-    const Cell cell = morton_decode(code);
-    mesh.vertices.emplace_back(voxels.lattice.corner[0] + (cell[0] + 0.5) * size,
-                               voxels.lattice.corner[1] + (cell[1] + 0.5) * size,
-                               voxels.lattice.corner[2] + (cell[2] + 0.5) * size);
-    mesh.triangles.push_back({vertex, vertex, vertex});
-  }
-  voxels.triangles.first.resize(voxels.codes.size() + 1);
-  voxels.triangles.ids.resize(voxels.codes.size());
-  std::iota(voxels.triangles.first.begin(), voxels.triangles.first.end(), 0u);
-  std::iota(voxels.triangles.ids.begin(), voxels.triangles.ids.end(), 0u);
-  return mesh;
-}
-
 }  // namespace
 
 SphereTree proximity_body(const SphereTree& tree) {
   const ScopedFloatEnvironment environment;
   IST_ASSERT(tree.has_proximity());
   const LinearOctree& octree = voxels_of(tree).proximity->octree;
-  VoxelSet voxels{
-      lattice_of_cells(tree), octree.codes(0), std::vector<PackedNormal>(octree.leaf_count()), {}};
-  const TriangleMesh centres = centres_of(voxels);
-  BoundBlocks bounds = build_bounds(SpherePolicy::kTight, centres, voxels, octree);
+  const Lattice lattice = lattice_of_cells(tree);
+  BoundBuilder builder(SpherePolicy::kTight);
+  const std::span<const OctreeNode> parents = octree.nodes(1);
+  const std::vector<std::uint64_t> codes = octree.codes(0);
+  builder.begin(lattice, parents.size() - 1);
+  Payload payload{{}, Eigen::Vector3d::Zero(), 0x1p-48 * (2 * lattice.root_centre())};
+  for (std::size_t parent = 0; parent + 1 < parents.size(); ++parent) {
+    const std::uint32_t first = parents[parent].first_child;
+    for (std::uint32_t leaf = first; leaf < parents[parent + 1].first_child; ++leaf) {
+      const Cell cell = morton_decode(codes[leaf]);
+      payload.points.assign(1, {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5});
+      builder.visit(parent, static_cast<int>(leaf - first), cell, payload);
+    }
+  }
   TreeParts parts;
-  parts.voxels = TreeVoxels{voxels.lattice, octree, std::move(voxels.normals), std::move(bounds)};
+  parts.voxels = TreeVoxels{lattice, octree, std::vector<PackedNormal>(octree.leaf_count()),
+                            builder.finish(octree)};
   parts.orientation = tree.orientation();
   return tree_from(std::move(parts));
 }

@@ -202,8 +202,7 @@ struct BuildReport {
 [[nodiscard]] IST_API bool can_build_tree(const TriangleMesh& mesh, const BuildOptions& options,
                                           Progress* progress = nullptr);
 
-/// The newest version of the tree file (`.ist`) that this library writes and reads. A tree without
-/// outer balls (prepare_depth()) is written as version 4, which earlier programs read too.
+/// The version of the tree file (`.ist`) that this library writes and reads.
 inline constexpr std::uint32_t kTreeFileVersion = 5;
 
 /// Writes the file whole or not at all. Throws kFileUnwritable. Cost: bound by the disk.
@@ -212,8 +211,8 @@ IST_API std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::
 
 /// Reads a tree into memory of its own. The checksum and then every count, index and number is
 /// verified before the tree is made, so no file can make a query crash or never end. Whether bounds
-/// hold the triangles, or nodes their leaves, is not verified: a file that this library did not
-/// write may give an answer that lacks pairs.
+/// and clusters hold the triangles, or nodes their leaves, is not verified: a file that this
+/// library did not write may give an answer that lacks pairs.
 ///
 /// Cost: 1 ns a byte. Throws kFileUnreadable, kNotATree, kTreeVersion, kTreeTruncated,
 /// kTreeCorrupt.

@@ -33,13 +33,13 @@ constexpr std::uint64_t kSlabBytes = bytes_a_leaf(sizeof(SlabBlock) + kNestingBy
 // closed surface is put into clusters too.
 constexpr std::uint64_t kProximityBytes = 3 * 2 * sizeof(std::uint64_t);
 constexpr std::uint64_t kPseudoNormalBytes = 256;
-// A triangle in clusters, with its corners twice while they are ordered.
+// A triangle in clusters, with vertices of its own, moved and then listed, while they are made.
 constexpr std::uint64_t kClusterBytes = 224;
 
 VoxelizerOptions voxelizer_options(const BuildOptions& options) {
   const bool saved = !is_implicit(options.spheres);
-  VoxelizerOptions voxelizer{options.voxel_size, saved || options.keep_triangles,
-                             options.max_memory, kOctreeBytes};
+  VoxelizerOptions voxelizer{options.voxel_size, options.keep_triangles, options.max_memory,
+                             kOctreeBytes};
   if (saved) {
     voxelizer.bytes_per_voxel += kBallBytes;
     if (options.spheres == SpherePolicy::kSlab) voxelizer.bytes_per_voxel += kSlabBytes;
@@ -111,7 +111,10 @@ class Stages {
 };
 
 TreeVoxels make_voxels(const TriangleMesh& mesh, const BuildOptions& options, Stages& stages) {
-  VoxelSet voxels = voxelize(mesh, voxelizer_options(options), stages.progress());
+  VoxelizerOptions voxelizer = voxelizer_options(options);
+  std::optional<BoundBuilder> builder;
+  if (!is_implicit(options.spheres)) voxelizer.visitor = &builder.emplace(options.spheres);
+  VoxelSet voxels = voxelize(mesh, voxelizer, stages.progress());
   stages.end("voxels");
 
   stages.begin("folding the octree");
@@ -119,8 +122,8 @@ TreeVoxels make_voxels(const TriangleMesh& mesh, const BuildOptions& options, St
                   std::move(voxels.normals)};
   stages.end("octree");
 
-  if (!is_implicit(options.spheres)) {
-    made.bounds = build_bounds(options.spheres, mesh, voxels, made.octree, stages.progress());
+  if (builder) {
+    made.bounds = builder->finish(made.octree, stages.progress());
     stages.end("bounds");
   }
   if (options.proximity) {
@@ -170,10 +173,10 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
   }
   if (options.keep_triangles) {
     const Eigen::Vector3d origin = parts.voxels ? parts.voxels->lattice.origin() : middle_of(mesh);
-    parts.triangles.emplace(std::move(mesh), origin);
+    stages.begin("putting triangles into clusters");
+    TriangleClusters clusters(mesh, origin, progress);
+    parts.triangles.emplace(std::move(mesh), std::move(clusters));
     stages.end("triangle clusters");
-  } else {
-    parts.voxels->lists = {};
   }
   return tree_from(std::move(parts));
 }

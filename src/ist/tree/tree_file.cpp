@@ -16,8 +16,9 @@
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 #include "ist/tree/tree_stream.h"
+#include "ist/voxel/triangle_bins.h"
 
-// The tree file, `.ist`, versions 4 and 5. Little-endian, packed, in this order:
+// The tree file, `.ist`, version 5. Little-endian, packed, in this order:
 //
 //     8 bytes   magic 89 49 53 54 0D 0A 1A 0A
 //     u32       version
@@ -42,9 +43,10 @@
 //                 f64 × 3 …, u32 × 3 … vertices, triangles
 //                 u32 …, u32 …         the lists' beginnings (leaves + 1), their entries
 //     proximity:  u32, u32 × depth, u32, u8 …   depth, nodes, leaves, masks
+//     of triangles too: f64 × 9, f64    axes of their clusters, one after the other; grid
+//                 NodeBlock …           bounds of the clusters, of the nodes above …
+//                 TriangleCluster …     the clusters
 //     outer balls: outer_balls_file.h
-//
-// A file with outer balls is of version 5, any other one of version 4.
 //
 // A file whose voxel size and cells are 0 is of a tree without voxels. Its corner, depth and list
 // entries are 0 too, its sections are triangles and outer balls, and it lacks the nodes, masks,
@@ -220,6 +222,57 @@ bool is_without_voxels(const Header& header) {
   return is_zero(header.voxel_size) && header.cells == 0;
 }
 
+// The clusters of a mesh, as they are stored.
+struct StoredClusters {
+  std::array<double, 9> axes;
+  double grid;
+  std::vector<std::vector<NodeBlock>> levels;
+  std::vector<TriangleCluster> clusters;
+};
+
+StoredClusters read_clusters(TreeReader& reader, std::size_t triangles) {
+  reader.require(triangles <= kMaxTriangles, "it has too many triangles");
+  StoredClusters stored{reader.value<std::array<double, 9>>(), reader.value<double>(), {}, {}};
+  const auto counts = TriangleClusters::node_counts(static_cast<std::uint32_t>(triangles));
+  for (const std::uint32_t nodes : counts) {
+    stored.levels.push_back(reader.array<NodeBlock>(TriangleClusters::block_count(nodes)));
+  }
+  stored.clusters = reader.array<TriangleCluster>(counts[0]);
+  return stored;
+}
+
+TriangleClusters verified(const TreeReader& reader, StoredClusters stored, std::size_t triangles,
+                          const Eigen::Vector3d& origin) {
+  constexpr const char* kFlaw = "its clusters have a number that is out of range";
+  constexpr double kLargest = 1 + 0x1p-20;
+  int exponent = 0;
+  reader.require(std::frexp(stored.grid, &exponent) == 0.5, kFlaw);  // a power of two
+  for (const double component : stored.axes) {
+    reader.require(std::abs(component) <= kLargest, kFlaw);
+  }
+  for (const std::vector<NodeBlock>& level : stored.levels) {
+    for (const NodeBlock& block : level) {
+      reader.require(all_finite(&block.centre[0][0], sizeof(block) / sizeof(float)), kFlaw);
+    }
+  }
+  for (const TriangleCluster& cluster : stored.clusters) {
+    cancellation_point();
+    reader.require(all_finite(&cluster.corner[0][0][0], std::size_t{9} * kClusterWidth) &&
+                       all_finite(&cluster.axis[0][0], 9) && all_finite(cluster.low, 3) &&
+                       all_finite(cluster.high, 3) && cluster.zero == 0,
+                   kFlaw);
+    for (const std::uint32_t id : cluster.id) {
+      reader.require(id < triangles, "a cluster refers to a triangle that does not exist");
+    }
+  }
+  return {static_cast<std::uint32_t>(triangles),
+          origin,
+          Eigen::Matrix3d(stored.axes.data()),
+          stored.grid,
+          std::move(stored.levels),
+          std::move(stored.clusters)};
+}
+
 // Verifies the header and the triangles of a tree without voxels.
 void verify_no_voxels(const TreeReader& reader, const Header& header, const TriangleMesh& mesh) {
   reader.require((header.sections & ~kOuterBallsSection) == kTrianglesSection,
@@ -267,10 +320,6 @@ const OuterBalls* outer_balls_of(const SphereTree& tree) {
   return triangles ? triangles->outer_balls() : nullptr;
 }
 
-std::uint32_t version_of(const OuterBalls* balls) {
-  return balls != nullptr ? kTreeFileVersion : kOldestTreeFile;
-}
-
 Header header_of(const SphereTree& tree, const OuterBalls* balls) {
   const Lattice lattice =
       tree.has_voxels() ? voxels_of(tree).lattice : Lattice{.voxel_size = 0, .cells = 0};
@@ -304,6 +353,15 @@ void write_mesh(TreeWriter& writer, const TriangleMesh& mesh, const TriangleList
   writer.array(lists.ids);
 }
 
+void write_clusters(TreeWriter& writer, const TriangleClusters& clusters) {
+  writer.array(std::span(clusters.axes().data(), 9));
+  writer.value(clusters.grid());
+  for (int level = 0; level <= clusters.root_level(); ++level) {
+    writer.array(clusters.bounds(level));
+  }
+  writer.array(clusters.clusters());
+}
+
 // `balls` are the tree's outer balls, or null.
 std::uint64_t write(const SphereTree& tree, const OuterBalls* balls, TreeWriter writer) {
   const ScopedFloatEnvironment environment;
@@ -311,6 +369,7 @@ std::uint64_t write(const SphereTree& tree, const OuterBalls* balls, TreeWriter 
   writer.array(tree.source().name);
   if (!tree.has_voxels()) {
     write_mesh(writer, *tree.triangles(), {});
+    write_clusters(writer, parts_of(tree).triangles->clusters);
     if (balls != nullptr) write_outer_balls(writer, *balls);
     return writer.commit();
   }
@@ -328,6 +387,7 @@ std::uint64_t write(const SphereTree& tree, const OuterBalls* balls, TreeWriter 
     writer.value(static_cast<std::uint32_t>(voxels.proximity->octree.depth()));
     write_octree(writer, voxels.proximity->octree);
   }
+  if (tree.triangles() != nullptr) write_clusters(writer, parts_of(tree).triangles->clusters);
   if (balls != nullptr) write_outer_balls(writer, *balls);
   return writer.commit();
 }
@@ -340,8 +400,7 @@ MeshAndLists read_mesh(TreeReader& reader, const Header& header,
   MeshAndLists read;
   auto& [mesh, lists] = read;
   const auto counts = reader.value<std::array<std::uint64_t, 3>>();
-  const auto coordinates = reader.array<std::array<double, 3>>(counts[0]);
-  for (const auto& [x, y, z] : coordinates) mesh.vertices.emplace_back(x, y, z);
+  mesh.vertices = reader.points(counts[0]);
   mesh.triangles = reader.array<Triangle>(counts[1]);
   mesh.frame = static_cast<PatientFrame>(header.frame);
   mesh.unit = static_cast<LengthUnit>(header.unit);
@@ -353,8 +412,6 @@ MeshAndLists read_mesh(TreeReader& reader, const Header& header,
 void verify_header(TreeReader& reader, const Header& header, const MeshSource& source) {
   reader.verify_checksum();
   reader.require(header.sections <= 31, "it lists an unknown section");
-  reader.require(((header.sections & kOuterBallsSection) != 0) == (reader.version() >= 5),
-                 "its version does not fit its sections");
   reader.require(header.orientation <= static_cast<std::uint32_t>(Orientation::kAssumed),
                  "its orientation is unknown");
   verify_source(reader, header, source);
@@ -369,7 +426,7 @@ TreeParts parts_with(const Header& header, MeshSource source) {
 }
 
 std::optional<OuterBalls> read_balls(TreeReader& reader, const Header& header) {
-  if (reader.version() < 5 || (header.sections & kOuterBallsSection) == 0) return std::nullopt;
+  if ((header.sections & kOuterBallsSection) == 0) return std::nullopt;
   return read_outer_balls(reader);
 }
 
@@ -379,6 +436,7 @@ void keep(std::optional<OuterBalls> balls, const TreeParts& parts) {
 
 SphereTree read_without_voxels(TreeReader& reader, const Header& header, MeshSource source) {
   auto [mesh, lists] = read_mesh(reader, header, std::nullopt);
+  StoredClusters clusters = read_clusters(reader, mesh.triangles.size());
   std::optional<OuterBalls> balls = read_balls(reader, header);
   verify_header(reader, header, source);
   verify_no_voxels(reader, header, mesh);
@@ -386,7 +444,8 @@ SphereTree read_without_voxels(TreeReader& reader, const Header& header, MeshSou
   if (balls) verify_outer_balls(reader, *balls);
   TreeParts parts = parts_with(header, std::move(source));
   const Eigen::Vector3d origin = middle_of(mesh);
-  parts.triangles.emplace(std::move(mesh), origin);
+  TriangleClusters made = verified(reader, std::move(clusters), mesh.triangles.size(), origin);
+  parts.triangles.emplace(std::move(mesh), std::move(made));
   keep(std::move(balls), parts);
   return tree_from(std::move(parts));
 }
@@ -413,6 +472,8 @@ SphereTree read(TreeReader reader) {
     const auto proximity_depth = reader.value<std::uint32_t>();
     proximity = read_octree(reader, proximity_depth);
   }
+  StoredClusters clusters;
+  if (triangles) clusters = read_clusters(reader, triangles->first.triangles.size());
   std::optional<OuterBalls> outer_balls = read_balls(reader, header);
 
   verify_header(reader, header, source);
@@ -425,7 +486,10 @@ SphereTree read(TreeReader reader) {
   TreeVoxels& voxels = parts.voxels.emplace(
       TreeVoxels{lattice, verified(reader, std::move(stored)), std::move(normals)});
   if (triangles) {
-    parts.triangles.emplace(std::move(triangles->first), lattice.origin());
+    TriangleMesh& mesh = triangles->first;
+    TriangleClusters made =
+        verified(reader, std::move(clusters), mesh.triangles.size(), lattice.origin());
+    parts.triangles.emplace(std::move(mesh), std::move(made));
     voxels.lists = std::move(triangles->second);
     keep(std::move(outer_balls), parts);
   }
@@ -441,13 +505,13 @@ SphereTree read(TreeReader reader) {
 
 std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::path& file) {
   const OuterBalls* balls = outer_balls_of(tree);
-  return write(tree, balls, TreeWriter(file, version_of(balls)));
+  return write(tree, balls, TreeWriter(file));
 }
 
 std::vector<std::byte> tree_to_bytes(const SphereTree& tree) {
   std::vector<std::byte> bytes;
   const OuterBalls* balls = outer_balls_of(tree);
-  write(tree, balls, TreeWriter(bytes, version_of(balls)));
+  write(tree, balls, TreeWriter(bytes));
   return bytes;
 }
 

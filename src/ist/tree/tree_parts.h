@@ -33,6 +33,9 @@ struct TreeTriangles {
   /// @param oriented the mesh as oriented at build
   TreeTriangles(TriangleMesh oriented, const Eigen::Vector3d& origin)
       : mesh(std::move(oriented)), clusters(mesh, origin) {}
+  /// @param made the clusters of that mesh
+  TreeTriangles(TriangleMesh oriented, TriangleClusters made)
+      : mesh(std::move(oriented)), clusters(std::move(made)) {}
 
   TriangleMesh mesh;          ///< mesh frame
   TriangleClusters clusters;  ///< about the tree's origin

@@ -30,14 +30,12 @@ static_assert(sizeof(Preamble) == 32 && std::is_trivially_copyable_v<Preamble>);
 
 }  // namespace
 
-TreeWriter::TreeWriter(const std::filesystem::path& file, std::uint32_t version)
-    : file_(file), version_(version) {
+TreeWriter::TreeWriter(const std::filesystem::path& file) : file_(file) {
   const Preamble later;
   store(&later, sizeof(later));
 }
 
-TreeWriter::TreeWriter(std::vector<std::byte>& memory, std::uint32_t version)
-    : memory_(&memory), version_(version) {
+TreeWriter::TreeWriter(std::vector<std::byte>& memory) : memory_(&memory) {
   memory.clear();
   const Preamble later;
   store(&later, sizeof(later));
@@ -58,7 +56,6 @@ void TreeWriter::bytes(const void* data, std::size_t count) {
 
 std::uint64_t TreeWriter::commit() {
   Preamble preamble;
-  preamble.version = version_;
   preamble.bytes = sizeof(preamble) + bytes_;
   preamble.checksum = checksum_.value();
   if (file_) {
@@ -100,14 +97,12 @@ void TreeReader::read_preamble() {
     fail(ErrorCode::kNotATree,
          "it was written in another byte order: build it again on this machine");
   }
-  if (preamble.version < kOldestTreeFile || preamble.version > kTreeFileVersion) {
-    fail(
-        ErrorCode::kTreeVersion,
-        fmt::format("it is of version {}, and this program reads versions {} to {}: build it again "
-                    "from the mesh",
-                    preamble.version, kOldestTreeFile, kTreeFileVersion));
+  if (preamble.version != kTreeFileVersion) {
+    fail(ErrorCode::kTreeVersion,
+         fmt::format("it is of version {}, and this program reads version {}: build it again from "
+                     "the mesh",
+                     preamble.version, kTreeFileVersion));
   }
-  version_ = preamble.version;
   if (preamble.bytes != size_) {
     fail(ErrorCode::kTreeTruncated,
          fmt::format("it has {} bytes and should have {}: copy or build it again", size_,

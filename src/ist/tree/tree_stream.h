@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -22,10 +23,9 @@ namespace ist {
 /// layout. Throws kFileUnwritable.
 class TreeWriter {
  public:
-  /// @param version of the file
-  TreeWriter(const std::filesystem::path& file, std::uint32_t version);
+  explicit TreeWriter(const std::filesystem::path& file);
   /// @param memory takes the file; must outlive the writer
-  TreeWriter(std::vector<std::byte>& memory, std::uint32_t version);
+  explicit TreeWriter(std::vector<std::byte>& memory);
 
   template <typename T>
   void value(const T& value) {
@@ -47,13 +47,9 @@ class TreeWriter {
 
   std::optional<OutputFile> file_;  // empty: in memory
   std::vector<std::byte>* memory_ = nullptr;
-  std::uint32_t version_;
   Checksum checksum_;
   std::uint64_t bytes_ = 0;
 };
-
-/// The oldest version that a TreeReader reads.
-inline constexpr std::uint32_t kOldestTreeFile = 4;
 
 /// Reads a tree file, from a disk or from memory, straight into the arrays of the tree. Each count
 /// is checked against the bytes left in the file; the arrays' content may be trusted only after
@@ -76,14 +72,19 @@ class IST_LOOP_API TreeReader {
   template <typename T>
   std::vector<T> array(std::uint64_t count) {
     static_assert(std::is_trivially_copyable_v<T>);
-    if (count > left_ / sizeof(T)) truncated();
+    require_room(count, sizeof(T));
     std::vector<T> values(count);
     bytes(values.data(), count * sizeof(T));
     return values;
   }
+  /// Returns points, each of three doubles.
+  std::vector<Eigen::Vector3d> points(std::uint64_t count) {
+    require_room(count, sizeof(Eigen::Vector3d));
+    std::vector<Eigen::Vector3d> points(count);
+    bytes(points.data(), count * sizeof(Eigen::Vector3d));
+    return points;
+  }
 
-  /// The version of the file.
-  [[nodiscard]] std::uint32_t version() const noexcept { return version_; }
   void verify_checksum() const;
   void require(bool holds, const char* otherwise) const {
     if (!holds) corrupt(otherwise);
@@ -93,6 +94,9 @@ class IST_LOOP_API TreeReader {
   void read_preamble();
   std::size_t take(void* data, std::size_t count);
   void bytes(void* data, std::uint64_t count);
+  void require_room(std::uint64_t count, std::size_t bytes) const {
+    if (count > left_ / bytes) truncated();
+  }
   [[noreturn]] void truncated() const;
   [[noreturn]] void corrupt(const char* what) const;
   [[noreturn]] void fail(ErrorCode code, const std::string& what) const;
@@ -101,7 +105,6 @@ class IST_LOOP_API TreeReader {
   std::span<const std::byte> memory_;
   std::string name_;
   Checksum checksum_;
-  std::uint32_t version_ = 0;
   std::uint64_t expected_ = 0, size_, left_;
 };
 

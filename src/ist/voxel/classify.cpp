@@ -159,7 +159,8 @@ class BlockClassifier {
     const auto& [a, b, c] = corners;
     const Vector3d low = a.cwiseMin(b).cwiseMin(c).array() - kRange - 0.5;
     const Vector3d high = a.cwiseMax(b).cwiseMax(c).array() + kRange - 0.5;
-    for_each_cell(block, low, high, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    const auto enter = [](std::uint32_t, std::uint32_t) { return true; };
+    for_each_cell(block, low, high, enter, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
       const Vector3d centre(x + 0.5, y + 0.5, z + 0.5);
       const NearestPoint nearest = nearest_on_triangle(corners, centre);
       const Vector3d away = centre - nearest.point;

@@ -42,14 +42,23 @@ class TriangleBox {
 
   /// Tests a cube that is known to overlap the triangle's bounding box.
   [[nodiscard]] bool meets_within_bounds(double x, double y, double z, double half) const noexcept {
+    return meets_column(x, y, half) && meets_in_column(x, y, z, half);
+  }
+  /// Makes the tests that the cubes over one (x, y) share.
+  [[nodiscard]] bool meets_column(double x, double y, double half) const noexcept {
+    const double px = x - origin_[0], py = y - origin_[1];
+    for (const EdgeAxes& e : edges_) {
+      if (e.z.separates(px, py, half)) return false;
+    }
+    return true;
+  }
+  /// Makes the other tests.
+  [[nodiscard]] bool meets_in_column(double x, double y, double z, double half) const noexcept {
     const double px = x - origin_[0], py = y - origin_[1], pz = z - origin_[2];
     const double height = (normal_[0] * px + normal_[1] * py) + normal_[2] * pz;
     if (height > half * normal_reach_ || -height > half * normal_reach_) return false;
     for (const EdgeAxes& e : edges_) {
-      if (e.x.separates(py, pz, half) || e.y.separates(pz, px, half) ||
-          e.z.separates(px, py, half)) {
-        return false;
-      }
+      if (e.x.separates(py, pz, half) || e.y.separates(pz, px, half)) return false;
     }
     return true;
   }
@@ -106,11 +115,11 @@ struct TriangleBins {
   TriangleLists triangles;           ///< one list a block
 };
 
-/// Calls visit(x, y, z) for each cell of a block whose indices are in [low, high], in order of z,
-/// then y, then x.
-template <typename Visit>
+/// Calls visit(x, y, z) for each cell of a block whose indices are in [low, high], in order of x,
+/// then y, then z, if enter(x, y) is true.
+template <typename Enter, typename Visit>
 void for_each_cell(const Cell& block, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
-                   const Visit& visit) {
+                   const Enter& enter, const Visit& visit) {
   Cell first, last;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
@@ -121,9 +130,12 @@ void for_each_cell(const Cell& block, const Eigen::Vector3d& low, const Eigen::V
     first[i] = static_cast<std::uint32_t>(from);
     last[i] = static_cast<std::uint32_t>(to);
   }
-  for (std::uint32_t z = first[2]; z <= last[2]; ++z)
-    for (std::uint32_t y = first[1]; y <= last[1]; ++y)
-      for (std::uint32_t x = first[0]; x <= last[0]; ++x) visit(x, y, z);
+  for (std::uint32_t x = first[0]; x <= last[0]; ++x) {
+    for (std::uint32_t y = first[1]; y <= last[1]; ++y) {
+      if (!enter(x, y)) continue;
+      for (std::uint32_t z = first[2]; z <= last[2]; ++z) visit(x, y, z);
+    }
+  }
 }
 
 /// Counts pairs of triangle and cube on a grid of any size, without a look for them.

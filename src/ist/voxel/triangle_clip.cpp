@@ -112,23 +112,23 @@ void clip_triangle(const std::array<Eigen::Vector3d, 3>& triangle, const Eigen::
 }
 
 TriangleSlicer::TriangleSlicer(const std::array<Eigen::Vector3d, 3>& triangle, double pad) noexcept
-    : pad_(pad) {
+    : reach_(0.5 + pad) {
   std::copy(triangle.begin(), triangle.end(), whole_.corners.begin());
   whole_.count = 3;
 }
 
 const ClippedTriangle& TriangleSlicer::cube(std::uint32_t x, std::uint32_t y,
                                             std::uint32_t z) noexcept {
-  if (in_layer_ == nullptr || z != z_) {
-    in_layer_ = &clip_between(whole_, 2, z - pad_, z + 1.0 + pad_, layer_);
+  if (in_layer_ == nullptr || x != x_) {
+    in_layer_ = &clip_between(whole_, 0, (x + 0.5) - reach_, (x + 0.5) + reach_, layer_);
     in_row_ = nullptr;
-    z_ = z;
+    x_ = x;
   }
   if (in_row_ == nullptr || y != y_) {
-    in_row_ = &clip_between(*in_layer_, 1, y - pad_, y + 1.0 + pad_, row_);
+    in_row_ = &clip_between(*in_layer_, 1, (y + 0.5) - reach_, (y + 0.5) + reach_, row_);
     y_ = y;
   }
-  return clip_between(*in_row_, 0, x - pad_, x + 1.0 + pad_, cube_);
+  return clip_between(*in_row_, 2, (z + 0.5) - reach_, (z + 0.5) + reach_, cube_);
 }
 
 }  // namespace ist

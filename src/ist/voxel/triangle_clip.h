@@ -29,8 +29,9 @@ const ClippedTriangle& clip_between(const ClippedTriangle& polygon, int axis, do
 void clip_triangle(const std::array<Eigen::Vector3d, 3>& triangle, const Eigen::Vector3d& low,
                    const Eigen::Vector3d& high, ClippedTriangle& result) noexcept;
 
-/// Clips one triangle to many unit cubes of the lattice, each grown by a pad. If calls come in
-/// order of z, then y, then x, each layer and each row of cubes is cut only once.
+/// Clips one triangle to many unit cubes of the lattice, each grown by a pad, as clip_triangle()
+/// does. If calls come in order of x, then y, then z, each layer and each row of cubes is cut only
+/// once.
 class TriangleSlicer {
  public:
   TriangleSlicer(const std::array<Eigen::Vector3d, 3>& triangle, double pad) noexcept;
@@ -40,10 +41,10 @@ class TriangleSlicer {
 
  private:
   ClippedTriangle whole_, layer_, row_, cube_;
-  const ClippedTriangle* in_layer_ = nullptr;  // the part of the triangle in layer z_
+  const ClippedTriangle* in_layer_ = nullptr;  // the part of the triangle in layer x_
   const ClippedTriangle* in_row_ = nullptr;    // the part of that layer in row y_
-  std::uint32_t y_ = 0, z_ = 0;
-  double pad_;
+  std::uint32_t x_ = 0, y_ = 0;
+  double reach_;  // of a cube from its centre
 };
 
 }  // namespace ist

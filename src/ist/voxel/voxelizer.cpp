@@ -17,6 +17,7 @@
 #include "ist/base/parallel.h"
 #include "ist/base/throw_error.h"
 #include "ist/mesh/bounding_box.h"
+#include "ist/mesh/nearest_point.h"
 #include "ist/voxel/triangle_bins.h"
 #include "ist/voxel/triangle_clip.h"
 
@@ -25,8 +26,7 @@ namespace {
 
 constexpr double kMaxCount = 4294967294.0;  // limit of voxels and of pairs: indices have 32 bits
 
-// A voxel's position in its block: x in bits 0 to 3, y in 4 to 7, z in 8 to 11; ascending along x
-// first.
+// A voxel's position in its block: x in bits 0 to 3, y in 4 to 7, z in 8 to 11.
 using BlockCell = std::uint16_t;
 
 std::size_t morton_in_block(BlockCell cell) {
@@ -46,15 +46,20 @@ std::size_t morton_in_block(BlockCell cell) {
 // exceed the guarantee.
 double inner_pad(const Lattice& lattice) { return lattice.pad() * (1 - 1.0 / 1024); }
 
-// Calls visit(cell) for each voxel of the block that intersects the triangle, ascending.
+// Calls visit(cell) for each voxel of the block that intersects the triangle, in the order of a
+// TriangleSlicer.
 template <typename Visit>
 void for_each_voxel(const TriangleBox& triangle, const Cell& block, const Lattice& lattice,
                     const Visit& visit) {
   const double pad = inner_pad(lattice);
   const Eigen::Vector3d low = triangle.min().array() - 1 - pad;
   const Eigen::Vector3d high = (triangle.max().array() + pad).min(lattice.cells - 1.0);
-  for_each_cell(block, low, high, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-    if (triangle.meets_within_bounds(x + 0.5, y + 0.5, z + 0.5, 0.5 + pad))
+  const double half = 0.5 + pad;
+  const auto enter = [&](std::uint32_t x, std::uint32_t y) {
+    return triangle.meets_column(x + 0.5, y + 0.5, half);
+  };
+  for_each_cell(block, low, high, enter, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    if (triangle.meets_in_column(x + 0.5, y + 0.5, z + 0.5, half))
       visit(static_cast<BlockCell>((x & 15) | (y & 15) << 4 | (z & 15) << 8));
   });
 }
@@ -67,16 +72,28 @@ struct BlockSurvey {
   std::vector<std::uint16_t> cells_of;  // number of voxels of each triangle
 };
 
+// Returns the number of nodes above the voxels of a block: eight voxels of one node are a byte.
+std::uint64_t parents_of(std::span<const std::uint64_t> occupied) {
+  constexpr std::uint64_t kLowBits = 0x7F7F7F7F7F7F7F7F;
+  std::uint64_t parents = 0;
+  for (const std::uint64_t word : occupied) {
+    const std::uint64_t bytes = (((word & kLowBits) + kLowBits) | word) & ~kLowBits;
+    parents += static_cast<std::uint64_t>(std::popcount(bytes));
+  }
+  return parents;
+}
+
 // The bytes of one block: its survey and its entries in the prefix sums.
 constexpr double kBlockBytes =
-    sizeof(BlockSurvey) + sizeof(std::unique_ptr<BlockSurvey>) + 2 * sizeof(std::uint64_t);
+    sizeof(BlockSurvey) + sizeof(std::unique_ptr<BlockSurvey>) + 3 * sizeof(std::uint64_t);
 
 // All voxels and pairs of voxel and triangle, before any result is allocated.
 struct Survey {
   TriangleBins bins;
   std::vector<std::unique_ptr<BlockSurvey>> blocks;
-  std::vector<std::uint64_t> first_voxel;  // index of each block's first voxel, and the total
-  std::vector<std::uint64_t> first_pair;   // index of each block's first pair, and the total
+  std::vector<std::uint64_t> first_voxel;   // index of each block's first voxel, and the total
+  std::vector<std::uint64_t> first_pair;    // index of each block's first pair, and the total
+  std::vector<std::uint64_t> first_parent;  // index of the node above the first, and the total
   [[nodiscard]] std::uint64_t voxels() const { return first_voxel.back(); }
   [[nodiscard]] std::uint64_t pairs() const { return first_pair.back(); }
 };
@@ -181,13 +198,14 @@ class SharedCounts {
 std::optional<Survey> survey(const LatticeMesh& mesh, const Lattice& lattice, const Memory& memory,
                              Progress& progress) {
   progress.begin_stage("sorting triangles into blocks", 0);
-  Survey result{bin_triangles(mesh, lattice.cells, lattice.pad()), {}, {}, {}};
+  Survey result{bin_triangles(mesh, lattice.cells, lattice.pad()), {}, {}, {}, {}};
   const std::size_t blocks = result.bins.codes.size();
   if (!memory.holds({.blocks = static_cast<double>(blocks)})) return std::nullopt;
   progress.begin_stage("finding surface voxels", blocks);
   result.blocks.resize(blocks);
   result.first_voxel.resize(blocks + 1);
   result.first_pair.resize(blocks + 1);
+  result.first_parent.resize(blocks + 1);
   SharedCounts found;
   std::atomic<bool> full{false};
   parallel_for(blocks, TriangleBins::kBlocksARange, [&](std::size_t begin, std::size_t end) {
@@ -200,6 +218,7 @@ std::optional<Survey> survey(const LatticeMesh& mesh, const Lattice& lattice, co
       const Counts of_block = surveyor.survey(b, *result.blocks[b]);
       result.first_voxel[b + 1] = static_cast<std::uint64_t>(of_block.voxels);
       result.first_pair[b + 1] = static_cast<std::uint64_t>(of_block.pairs);
+      result.first_parent[b + 1] = parents_of(result.blocks[b]->occupied);
       more = {more.blocks + 1, more.voxels + of_block.voxels, more.pairs + of_block.pairs};
     }
     if (!memory.holds(found.add(more))) full.store(true, std::memory_order_relaxed);
@@ -209,6 +228,7 @@ std::optional<Survey> survey(const LatticeMesh& mesh, const Lattice& lattice, co
   for (std::size_t b = 0; b < blocks; ++b) {
     result.first_voxel[b + 1] += result.first_voxel[b];
     result.first_pair[b + 1] += result.first_pair[b];
+    result.first_parent[b + 1] += result.first_parent[b];
   }
   return result;
 }
@@ -308,8 +328,13 @@ double expected_size(const Memory& memory, double least, double most) {
 // Sums the normals in the voxels of one block, and writes the voxels to their places.
 class BlockWriter {
  public:
-  BlockWriter(const LatticeMesh& mesh, const Survey& survey, VoxelSet& set)
-      : mesh_(mesh), survey_(survey), set_(set) {}
+  // @param visitor takes the geometry of each voxel, if not null
+  BlockWriter(const LatticeMesh& mesh, const Survey& survey, VoxelSet& set, PayloadVisitor* visitor)
+      : mesh_(mesh), survey_(survey), set_(set), visitor_(visitor) {
+    // Lattice coordinates and the corners of clipped pieces err by at most sixteen 2⁻⁵³ of the
+    // grid's extent: two roundings for a coordinate, and three or four for each of three cuts.
+    payload_.pad = 0x1p-48 * (2 * set.lattice.root_centre());
+  }
 
   void write(std::size_t b) {
     const BlockSurvey& block = *survey_.blocks[b];
@@ -323,7 +348,9 @@ class BlockWriter {
       }
     }
     sums_.assign(voxels, {});
-    ranks_.clear();
+    pairs_.clear();
+    pieces_.clear();
+    points_.clear();
     std::size_t next = 0;
     const auto triangles = survey_.bins.triangles[b];
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -334,14 +361,22 @@ class BlockWriter {
     for (std::uint32_t i = 0; i < voxels; ++i) {
       set_.normals[survey_.first_voxel[b] + i] = PackedNormal(sums_[i].normal, sums_[i].area);
     }
+    if (set_.triangles.empty() && visitor_ == nullptr) return;
+    order_pairs();
     if (!set_.triangles.empty()) write_lists(b);
+    if (visitor_ != nullptr) visit_voxels(b);
   }
 
  private:
   struct Sum {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     double area = 0;
+    Eigen::Vector3d vector_area = Eigen::Vector3d::Zero();  // of the pieces, up to a factor
     std::uint32_t triangles = 0;
+  };
+  // The part of a triangle in a voxel, or its nearest point if there is no part.
+  struct Piece {
+    std::uint32_t first, count;  // of its points
   };
 
   void add(std::uint32_t t, const Cell& block, std::span<const BlockCell> cells) {
@@ -355,37 +390,78 @@ class BlockWriter {
     TriangleSlicer slicer(corners, set_.lattice.pad());
     for (const BlockCell cell : cells) {
       const std::uint16_t rank = rank_[morton_in_block(cell)];
-      ranks_.push_back(rank);
+      pairs_.push_back({rank, t});
       Sum& sum = sums_[rank];
       ++sum.triangles;
+      if (!normal && visitor_ == nullptr) continue;
+      const std::uint32_t x = block[0] * TriangleBins::kEdge + (cell & 15u),
+                          y = block[1] * TriangleBins::kEdge + (cell >> 4 & 15u),
+                          z = block[2] * TriangleBins::kEdge + (cell >> 8 & 15u);
+      const ClippedTriangle& inside = slicer.cube(x, y, z);
+      if (visitor_ != nullptr) keep(corners, inside, {x + 0.5, y + 0.5, z + 0.5}, sum);
       if (!normal) continue;
-      const ClippedTriangle& inside =
-          slicer.cube(block[0] * TriangleBins::kEdge + (cell & 15u),
-                      block[1] * TriangleBins::kEdge + (cell >> 4 & 15u),
-                      block[2] * TriangleBins::kEdge + (cell >> 8 & 15u));
       const double area = kTouch + inside.projected_area(static_cast<int>(steepest)) / slope;
       sum.normal += area * *normal;
       sum.area += area;
     }
   }
 
-  void write_lists(std::size_t b) {
-    std::uint64_t next = survey_.first_pair[b];
-    std::uint32_t* first = set_.triangles.first.data() + survey_.first_voxel[b];
-    for (Sum& sum : sums_) {
-      *first++ = static_cast<std::uint32_t>(next);
-      next += sum.triangles;
-      sum.triangles = 0;
+  void keep(const std::array<Eigen::Vector3d, 3>& corners, const ClippedTriangle& inside,
+            const Eigen::Vector3d& centre, Sum& sum) {
+    const auto first = static_cast<std::uint32_t>(points_.size());
+    const auto* const piece = inside.corners.data();
+    points_.insert(points_.end(), piece, piece + inside.count);
+    for (int i = 2; i < inside.count; ++i) {
+      add_to(sum.vector_area,
+             cross_in_order(difference(piece[i - 1], piece[0]), difference(piece[i], piece[0])));
     }
-    first -= sums_.size();
-    const BlockSurvey& block = *survey_.blocks[b];
-    const auto triangles = survey_.bins.triangles[b];
-    std::size_t pair = 0;
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      for (std::uint16_t count = block.cells_of[i]; count > 0; --count, ++pair) {
-        const std::uint16_t rank = ranks_[pair];
-        set_.triangles.ids[first[rank] + sums_[rank].triangles++] = triangles[i];
+    if (inside.count == 0) points_.push_back(nearest_on_triangle(corners, centre).point);
+    pieces_.push_back({first, static_cast<std::uint32_t>(points_.size()) - first});
+  }
+
+  // Lists the pairs voxel by voxel: in the order of a counting sort, which keeps the triangles'.
+  void order_pairs() {
+    first_.assign(sums_.size() + 1, 0);
+    for (std::size_t i = 0; i < sums_.size(); ++i) first_[i + 1] = first_[i] + sums_[i].triangles;
+    next_.assign(first_.begin(), first_.end());
+    order_.resize(pairs_.size());
+    for (std::uint32_t pair = 0; pair < pairs_.size(); ++pair) {
+      order_[next_[pairs_[pair].rank]++] = pair;
+    }
+  }
+
+  void write_lists(std::size_t b) {
+    const std::uint64_t first = survey_.first_pair[b];
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      set_.triangles.first[survey_.first_voxel[b] + i] =
+          static_cast<std::uint32_t>(first + first_[i]);
+    }
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+      set_.triangles.ids[first + i] = pairs_[order_[i]].triangle;
+    }
+  }
+
+  void visit_voxels(std::size_t b) {
+    const std::uint64_t first_code = survey_.bins.codes[b] * TriangleBins::kBlockCells;
+    std::uint64_t parent = survey_.first_parent[b], before = 0;
+    int slot = -1;
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      const std::uint64_t code = set_.codes[survey_.first_voxel[b] + i];
+      const std::uint64_t here = (code - first_code) >> 3;
+      if (i > 0 && here != before) {
+        ++parent;
+        slot = -1;
       }
+      before = here;
+      payload_.points.clear();
+      for (std::uint32_t k = first_[i]; k < first_[i + 1]; ++k) {
+        const Piece& piece = pieces_[order_[k]];
+        const auto* const points = points_.data() + piece.first;
+        payload_.points.insert(payload_.points.end(), points, points + piece.count);
+      }
+      payload_.area = sums_[i].vector_area;
+      payload_.is_flat = sums_[i].triangles == 1;
+      visitor_->visit(parent, ++slot, morton_decode(code), payload_);
     }
   }
 
@@ -403,9 +479,18 @@ class BlockWriter {
   const LatticeMesh& mesh_;
   const Survey& survey_;
   VoxelSet& set_;
+  PayloadVisitor* visitor_;
   std::array<std::uint16_t, TriangleBins::kBlockCells> rank_{};  // rank of each voxel in its block
-  std::vector<std::uint16_t> ranks_;                             // rank of each pair's voxel
+  struct Pair {
+    std::uint16_t rank;  // of the voxel
+    std::uint32_t triangle;
+  };
+  std::vector<Pair> pairs_;
   std::vector<Sum> sums_;
+  std::vector<std::uint32_t> first_, next_, order_;  // of each voxel: its pairs
+  std::vector<Piece> pieces_;                        // of each pair, for the visitor
+  std::vector<Eigen::Vector3d> points_;
+  Payload payload_;
 };
 
 }  // namespace
@@ -448,10 +533,13 @@ VoxelSet voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options, Pro
     set.triangles.first.back() = static_cast<std::uint32_t>(found->pairs());
     set.triangles.ids.resize(found->pairs());
   }
+  if (options.visitor != nullptr) options.visitor->begin(set.lattice, found->first_parent.back());
   parallel_for(blocks, TriangleBins::kBlocksARange, [&](std::size_t begin, std::size_t end) {
-    shown.check();
-    const auto writer = std::make_unique<BlockWriter>(lattice_mesh, *found, set);
-    for (std::size_t b = begin; b < end; ++b) writer->write(b);
+    const auto writer = std::make_unique<BlockWriter>(lattice_mesh, *found, set, options.visitor);
+    for (std::size_t b = begin; b < end; ++b) {
+      shown.check();
+      writer->write(b);
+    }
     shown.add(end - begin);
   });
   return set;

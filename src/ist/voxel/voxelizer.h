@@ -6,6 +6,7 @@
 #include "ist/base/api.h"
 #include "ist/base/progress.h"
 #include "ist/mesh/mesh.h"
+#include "ist/voxel/payload.h"
 #include "ist/voxel/voxel_set.h"
 
 namespace ist {
@@ -17,6 +18,7 @@ struct VoxelizerOptions {
   std::uint64_t max_memory = std::numeric_limits<std::uint64_t>::max();
   /// The memory of the caller's structures: bytes a voxel and a triangle.
   std::uint64_t bytes_per_voxel = 0, bytes_per_triangle = 0;
+  PayloadVisitor* visitor = nullptr;  ///< takes the geometry of each voxel, if not null
 };
 
 /// Voxelizes the surface of a mesh: finds every voxel whose closed cube intersects a triangle, and
