@@ -31,6 +31,10 @@ ordered_json json_of(const ContactRegion& region, std::size_t contact) {
   return out;
 }
 
+ordered_json tooth_or_null(int number) {
+  return number == 0 ? ordered_json(nullptr) : ordered_json(number);
+}
+
 ordered_json json_of(const BiteContact& contact, std::size_t number) {
   return {{"number", number},
           {"fixed", contact.fixed},
@@ -43,7 +47,10 @@ ordered_json json_of(const BiteContact& contact, std::size_t number) {
           {"share_thicker", contact.share_thicker},
           {"least_distance", contact.least_distance},
           {"centre", triple(contact.centre)},
-          {"closest", triple(contact.closest)}};
+          {"closest", triple(contact.closest)},
+          {"teeth",
+           {{"fixed", tooth_or_null(contact.fixed_tooth)},
+            {"moving", tooth_or_null(contact.moving_tooth)}}}};
 }
 
 ordered_json json_of(const Balance::Shares& shares, const Division& division) {
@@ -66,10 +73,16 @@ ordered_json json_of(const Division& division) {
           {"assumed", division.assumed}};
 }
 
+ordered_json json_of(const Eigen::AlignedBox3d& box) {
+  const Eigen::Vector3d &low = box.min(), &high = box.max();
+  return {low.x(), low.y(), low.z(), high.x(), high.y(), high.z()};
+}
+
 ordered_json json_of(const BiteBody& body, const Bite& bite) {
   const SurfaceOcclusion& surface = body.surface;
   ordered_json out{{"file", body.name}, {"hash", nullptr}, {"closed", body.closed}};
   if (body.hash) out["hash"] = *body.hash;
+  out["box"] = json_of(body.box());
   out["vertices"] = surface.vertices.size();
   std::size_t near = 0;
   for (const SurfaceDistance& one : surface.vertices) near += std::isnan(one.distance) ? 0U : 1U;
@@ -101,12 +114,6 @@ ordered_json json_of(const BiteBody& body, const Bite& bite) {
                             {"least_distance", or_null(tooth.least_distance)}});
   }
   return out;
-}
-
-ordered_json json_of(const std::optional<Eigen::AlignedBox3d>& box) {
-  if (!box) return nullptr;
-  const Eigen::Vector3d &low = box->min(), &high = box->max();
-  return {low.x(), low.y(), low.z(), high.x(), high.y(), high.z()};
 }
 
 ordered_json or_null(const std::optional<std::string>& text) {
@@ -158,7 +165,7 @@ ordered_json json_of(const Bite& bite) {
   for (std::size_t i = 0; i < bite.contacts.size(); ++i) {
     out["contacts"].push_back(json_of(bite.contacts[i], i + 1));
   }
-  out["region"] = json_of(bite.region);
+  out["region"] = bite.region ? json_of(*bite.region) : ordered_json(nullptr);
   out["warning"] = or_null(bite.warning);
   out["hint"] = or_null(bite.hint);
   out["checks"] = bite.checks;
