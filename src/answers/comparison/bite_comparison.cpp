@@ -116,8 +116,9 @@ void add_notes(BiteComparison& made) {
     const char* which = bite == &before ? "the first bite" : "the second bite";
     if (!bite->warning.empty()) made.notes.push_back(fmt::format("{}: {}", which, bite->warning));
     if (bite->contacts.empty()) made.notes.push_back(fmt::format("{} has no contact", which));
-    if (bite->unit_assumed)
-      made.notes.push_back(fmt::format("{}: unit: {} (assumed)", which, bite->unit));
+  }
+  if (before.unit_assumed || after.unit_assumed) {
+    made.notes.push_back(fmt::format("unit: {} (assumed)", before.unit));
   }
   if (!made.same_limits()) {
     made.notes.emplace_back("areas within limits are left out: the bites have different presets");

@@ -41,7 +41,7 @@ class Fields {
   }
   [[nodiscard]] std::size_t count(const char* key) const {
     const ordered_json& value = at(key);
-    if (!value.is_number_unsigned()) fail(key, "no whole number");
+    if (!value.is_number_integer() || value < 0) fail(key, "no whole number from 0 on");
     return value.get<std::size_t>();
   }
   [[nodiscard]] int tooth(const char* key) const {
