@@ -23,7 +23,7 @@ class Fields {
  public:
   Fields(const ordered_json& json, std::string place) : json_(json), place_(std::move(place)) {
     if (!json.is_object())
-      throw_error(ErrorCode::kInputInvalid, "{}: no object; {}", place_, kBiteRemedy);
+      throw_error(ErrorCode::kInputInvalid, "{} no object; {}", place_, kBiteRemedy);
   }
 
   [[nodiscard]] double number(const char* key) const {
