@@ -1,9 +1,12 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "answers/commit.h"
 #include "answers/json_parts.h"
 #include "answers/occlusion/bite_files.h"
+#include "answers/occlusion/map_statistics.h"
 
 namespace ist::answers {
 namespace {
@@ -73,6 +76,22 @@ ordered_json json_of(const Division& division) {
           {"assumed", division.assumed}};
 }
 
+ordered_json json_of(const std::optional<MapStatistics>& map) {
+  if (!map) return nullptr;
+  ordered_json percentiles;
+  for (std::size_t i = 0; i < kPercentiles.size(); ++i) {
+    percentiles[fmt::format("{}", kPercentiles[i])] = map->percentiles[i];
+  }
+  return {{"area", map->area},
+          {"mean", map->mean},
+          {"deviation", map->deviation},
+          {"root_mean_square", map->root_mean_square},
+          {"least", map->least},
+          {"most", map->most},
+          {"percentiles", percentiles},
+          {"histogram", {{"from", map->from}, {"step", map->step}, {"areas", map->histogram}}}};
+}
+
 ordered_json json_of(const Eigen::AlignedBox3d& box) {
   const Eigen::Vector3d &low = box.min(), &high = box.max();
   return {low.x(), low.y(), low.z(), high.x(), high.y(), high.z()};
@@ -98,6 +117,7 @@ ordered_json json_of(const BiteBody& body, const Bite& bite) {
   out["depth_integral"] = surface.depth_integral;
   const std::optional<double> deepest = bite.known_depth(surface.depth_at_vertices);
   out["depth_at_vertices"] = deepest ? ordered_json(*deepest) : ordered_json(nullptr);
+  out["map"] = json_of(map_statistics(body, bite));
   out["regions"] = ordered_json::array();
   for (std::size_t i = 0; i < surface.regions.size(); ++i) {
     out["regions"].push_back(json_of(surface.regions[i], body.contacts[i]));

@@ -117,6 +117,7 @@ std::vector<double> distance_change(std::span<const SurfaceDistance> before,
                 "the maps have {} and {} vertices: compare maps of one mesh", before.size(),
                 after.size());
   }
+  const ScopedFloatEnvironment environment;
   std::vector<double> change(before.size());
   for (std::size_t v = 0; v < before.size(); ++v) {
     change[v] = before[v].is_signed == after[v].is_signed
