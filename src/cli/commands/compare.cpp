@@ -25,6 +25,8 @@
 #include "cli/load_bodies.h"
 #include "cli/occlusion/bite_options.h"
 #include "cli/occlusion/comparison_tables.h"
+#include "cli/occlusion/figure/bite_figure.h"
+#include "cli/occlusion/figure/figure_files.h"
 #include "cli/output_files.h"
 #include "cli/poses/pose_file.h"
 #include "cli/progress_bar.h"
@@ -36,9 +38,13 @@ using namespace answers;
 
 namespace {
 
-constexpr std::array kComparisonFiles = {FileFormat::kVtp, FileFormat::kPly, FileFormat::kCsv,
-                                         FileFormat::kJson};
-constexpr std::initializer_list<FileFormat> kMaps = {FileFormat::kVtp, FileFormat::kPly};
+constexpr std::array kComparisonFiles = {FileFormat::kVtp,  FileFormat::kPly, FileFormat::kCsv,
+                                         FileFormat::kJson, FileFormat::kPng, FileFormat::kSvg,
+                                         FileFormat::kPdf};
+constexpr std::initializer_list<FileFormat> kMaps = {
+    FileFormat::kVtp, FileFormat::kPly, FileFormat::kPng, FileFormat::kSvg, FileFormat::kPdf};
+constexpr std::initializer_list<FileFormat> kColoured = {FileFormat::kPly, FileFormat::kPng,
+                                                         FileFormat::kSvg, FileFormat::kPdf};
 
 // Options that say how a bite is measured. Files of bites are measured already.
 constexpr std::array kMeasuring = {
@@ -90,9 +96,11 @@ ComparisonQuestions comparison_of(const CompareArguments& options) {
 void check_kind(const CompareArguments& options, const OutputFiles& outputs) {
   refuse_if(options.decimal == "comma" && !outputs.has({FileFormat::kCsv}), "--decimal",
             "goes with .csv");
-  refuse_if(options.range && !outputs.has({FileFormat::kPly}), "--range", "goes with .ply");
+  refuse_if(options.range && !outputs.has(kColoured), "--range",
+            "goes with .ply, .png, .svg and .pdf");
   refuse_if(options.range && (!(*options.range > 0) || !std::isfinite(*options.range)), "--range",
             "give micrometres above 0");
+  check_figures(outputs, options.outputs);
   if (options.has_poses()) return;
   for (const std::filesystem::path& file : {options.files.fixed, options.files.moving}) {
     refuse_if(!ends_in_json(file), file.string(),
@@ -131,21 +139,18 @@ TwoBites measured(CompareArguments& options) {
   return two;
 }
 
-// The scale of the colours: as the user says, or the largest change rounded up.
-MapScale scale_of(const CompareArguments& options, const Bite& bite, const ChangeMap& map) {
-  if (options.range) return MapScale::of_changes(*options.range * bite.units_per_micrometre());
-  const double most = map.most();
-  if (!(most > 0)) return MapScale::of_changes(bite.reach);
-  const double step = round_step(most);
-  return MapScale::of_changes(std::ceil(most / step) * step);
-}
-
-void write_map(const CompareArguments& options, const TwoBites& two, const ChangeMap& map,
+void write_map(const CompareArguments& options, const TwoBites& two,
+               const BiteComparison& comparison, const ChangeMap& map,
                const OutputFiles::One& output) {
   if (output.format == FileFormat::kVtp) {
     return write_vtp(joined(change_arrays(two.before, two.after, map)), *output.file);
   }
-  const MapScale scale = scale_of(options, two.after, map);
+  std::optional<double> most;
+  if (options.range) most = *options.range * two.after.units_per_micrometre();
+  const MapScale scale = scale_of(map, two.after.reach, most);
+  if (const std::optional<FigureKind> kind = figure_kind(output.format)) {
+    return write_change_figure(two.after, comparison, map, scale, *kind, *output.file);
+  }
   const std::string comment =
       fmt::format("change of the signed distance, {}: red nearer, blue farther, to {:g} either way",
                   two.after.unit_words(), scale.high());
@@ -179,7 +184,7 @@ void run(CompareArguments& options) {
     } else if (output.format == FileFormat::kJson) {
       write_comparison_json(comparison, *output.file);
     } else {
-      write_map(options, *two, map, output);
+      write_map(options, *two, comparison, map, output);
     }
   }
   outputs.commit();
@@ -213,9 +218,10 @@ void add_mesh_options(CLI::App& command, CompareArguments& options) {
   add_file(command, "--before", options.before,
            "the first pose: 4 x 4 numbers row by row, or a transform of ITK; by default as stored");
   add_file(command, "--after", options.after, "the second pose, likewise");
-  command.add_option("--range", options.range,
-                     "micrometres: the change at both ends of the colours in .ply; by default the "
-                     "largest change. One range makes a series comparable");
+  command.add_option(
+      "--range", options.range,
+      "micrometres: the change at both ends of the colours in .ply and figures; by default the "
+      "largest change. One range makes a series comparable");
   command.add_flag("--no-names", options.questions.no_names,
                    "write fixed and moving for the files' names");
   add_max_memory(command, options.files.max_memory, "a body's tree of triangles");
@@ -239,8 +245,8 @@ void add_compare(CLI::App& app) {
       ->required();
   command
       ->add_option("-o,--output", options->outputs,
-                   fmt::format("file to write, by its ending: {}; .vtp and .ply hold the map of "
-                               "the change, of two meshes; may be given again",
+                   fmt::format("file to write, by its ending: {}; .vtp, .ply and figures hold the "
+                               "map of the change, of two meshes; may be given again",
                                endings_with_programs(kComparisonFiles)))
       ->type_name("FILE");
   add_comparison_options(*command, *options);

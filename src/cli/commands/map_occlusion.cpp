@@ -25,6 +25,8 @@
 #include "cli/occlusion/bite_html.h"
 #include "cli/occlusion/bite_options.h"
 #include "cli/occlusion/bite_tables.h"
+#include "cli/occlusion/figure/bite_figure.h"
+#include "cli/occlusion/figure/figure_files.h"
 #include "cli/output_files.h"
 #include "cli/page/page_blocks.h"
 #include "cli/page/page_file.h"
@@ -40,18 +42,31 @@ using namespace answers;
 namespace {
 
 constexpr std::array kWritable = {FileFormat::kVtp, FileFormat::kPly,  FileFormat::kGlb,
-                                  FileFormat::kCsv, FileFormat::kJson, FileFormat::kHtml};
+                                  FileFormat::kCsv, FileFormat::kJson, FileFormat::kHtml,
+                                  FileFormat::kPng, FileFormat::kSvg,  FileFormat::kPdf};
+constexpr std::initializer_list<FileFormat> kFigures = {FileFormat::kPng, FileFormat::kSvg,
+                                                        FileFormat::kPdf};
 
 struct OcclusionArguments : BiteOptions {
   PoseOptions pose;
   std::vector<std::filesystem::path> outputs;
-  std::string side;
+  std::string side, scale = "bands", range;
   std::string decimal = "point";
   std::optional<double> open;  // millimetres
   bool fail_if_touching = false, json = false;
 };
 
+// Both ends of a continuous scale, micrometres.
+std::vector<double> range_of(const std::string& text) {
+  const auto numbers = numbers_of(text);
+  refuse_if(
+      !numbers || numbers->size() != 2 || !((*numbers)[0] < (*numbers)[1]) || !((*numbers)[1] > 0),
+      "--range", "{}: give LOW,HIGH, two distances in micrometres, such as -200,500", text);
+  return *numbers;
+}
+
 OutputFiles outputs_of(const OcclusionArguments& options) {
+  if (!options.range.empty()) static_cast<void>(range_of(options.range));
   OutputFiles outputs(options.outputs, kWritable,
                       {options.files.fixed, options.files.moving, options.pose.matrix,
                        label_source(options.questions.labels_fixed).file,
@@ -62,11 +77,26 @@ OutputFiles outputs_of(const OcclusionArguments& options) {
   refuse_if(options.open && !open, "--open", "goes with .ply and .glb");
   refuse_if(!options.side.empty() && !open && !outputs.has({FileFormat::kVtp}), "--side",
             "goes with .vtp, .ply and .glb");
+  check_figures(outputs, options.outputs);
+  const bool figure = outputs.has(kFigures);
+  refuse_if(options.scale != "bands" && !figure, "--scale", "goes with .png, .svg and .pdf");
+  refuse_if(!options.range.empty() && options.scale == "bands", "--range",
+            "goes with --scale continuous");
   if (options.open) {
     refuse_if(!(*options.open >= 0) || !std::isfinite(*options.open), "--open",
               "give millimetres from 0 on");
   }
   return outputs;
+}
+
+FigureOptions figure_of(const OcclusionArguments& options, const Bite& bite) {
+  FigureOptions figure;
+  figure.continuous = options.scale == "continuous";
+  if (options.range.empty()) return figure;
+  const auto numbers = range_of(options.range);
+  const double unit = bite.units_per_micrometre();
+  figure.range = std::pair(numbers[0] * unit, numbers[1] * unit);
+  return figure;
 }
 
 void write(const Bite& bite, const OutputFiles::One& output, BiteSelection selection,
@@ -135,7 +165,9 @@ void run(OcclusionArguments& options) {
   if (options.open) selection.open = *options.open * bite.units_per_mm;
   const DecimalSign sign = options.decimal == "comma" ? DecimalSign::kComma : DecimalSign::kPoint;
   for (const OutputFiles::One& output : outputs.all()) {
-    if (output.format == FileFormat::kHtml) {
+    if (const std::optional<FigureKind> kind = figure_kind(output.format)) {
+      write_bite_figure(bite, scale_of(bite, figure_of(options, bite)), *kind, *output.file);
+    } else if (output.format == FileFormat::kHtml) {
       write_report(bodies, bite, questions, *output.file);
     } else {
       write(bite, output, selection, sign);
@@ -186,6 +218,16 @@ void add_occlusion(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--open", options->open,
                       "open the pair like a book, with this gap, millimetres: .ply and .glb");
+  command
+      ->add_option("--scale", options->scale,
+                   "the colours of .png, .svg and .pdf: bands of the limits, or continuous")
+      ->transform(one_of({"bands", "continuous"}))
+      ->capture_default_str();
+  command
+      ->add_option("--range", options->range,
+                   "LOW,HIGH: both ends of a continuous scale, micrometres; by default the whole "
+                   "map. One range makes a series of figures comparable")
+      ->type_name("LOW,HIGH");
   command->add_flag("--no-names", options->questions.no_names,
                     "write fixed and moving for the files' names");
   command->add_flag(
@@ -199,7 +241,8 @@ void add_occlusion(CLI::App& app) {
       *command,
       std::string(
           "Examples: ist occlusion upper.stl lower.stl -o bite.vtp\n"
-          "          ist occlusion upper.stl lower.stl --frame lps -o bite.html -o bite.csv\n\n") +
+          "          ist occlusion upper.stl lower.stl --frame lps -o bite.html -o bite.csv\n"
+          "          ist occlusion upper.stl lower.stl -o bite.png --limits 50,100,200\n\n") +
           kCaveat);
   command->callback([options] { run(*options); });
 }
