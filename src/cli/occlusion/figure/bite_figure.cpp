@@ -50,7 +50,8 @@ struct Panel {
 
 // What a legend and a histogram are of.
 struct LegendWords {
-  std::string heading, axis;
+  std::string heading, axis, bare = "farther, or not known";
+  double bin = 50;  // of the histogram, micrometres
   std::vector<std::string> below;
   bool has_lost = false, is_empty = false;
 };
@@ -231,7 +232,7 @@ void draw_colour_bar(Canvas& canvas, const MapScale& scale, double unit, double 
        tick <= scale.high() / unit * (1 + 1e-9); tick += step) {
     const double x = kWide * (tick * unit - scale.low()) / (scale.high() - scale.low());
     canvas.line(std::array{x, top + kHigh, x, top + kHigh + 2}, 0.5, kInk);
-    canvas.text(x, top + kHigh + 9, fmt::format("{:g}", std::round(tick)),
+    canvas.text(x, top + kHigh + 9, fmt::format("{:g}", std::round(tick) + 0.0),
                 {.size = kText, .anchor = x < 10 ? TextAnchor::kStart : TextAnchor::kMiddle});
   }
 }
@@ -283,8 +284,9 @@ void draw_histogram(Canvas& canvas, const std::vector<const MapStatistics*>& map
        tick += each) {
     const double x = kLeft + kWide * (tick * unit - low) / (high - low);
     canvas.line(std::array{x, kBottom, x, kBottom + 2}, 0.5, kInk);
-    canvas.text(x, kBottom + 9, fmt::format("{:g}", std::round(tick)),
-                {.size = kText, .anchor = TextAnchor::kMiddle});
+    canvas.text(
+        x, kBottom + 9, fmt::format("{:g}", std::round(tick) + 0.0),
+        {.size = kText, .anchor = x > kLeft + kWide - 4 ? TextAnchor::kEnd : TextAnchor::kMiddle});
   }
   canvas.text(kLeft + 0.5 * kWide, kBottom + 18, axis,
               {.size = kText, .anchor = TextAnchor::kMiddle});
@@ -295,12 +297,12 @@ void draw_legend(Canvas& canvas, const MapScale& scale, double unit, const Legen
   Legend first(canvas, 0, kLegendTop + 11), second(canvas, kSecondColumn, kLegendTop + 11);
   if (scale.bands().empty()) {
     draw_colour_bar(canvas, scale, unit, kLegendTop + 12);
-    Legend(canvas, 0, kLegendTop + 40).swatch(kBareSurface, false, "farther, or not known");
+    Legend(canvas, 0, kLegendTop + 40).swatch(kBareSurface, false, words.bare);
   } else {
     for (const MapBand& band : scale.bands()) {
       first.swatch(band.colour, band.below_scan_error, band.words);
     }
-    second.swatch(kBareSurface, false, "farther, or not known");
+    second.swatch(kBareSurface, false, words.bare);
     const bool has_hatch = std::any_of(scale.bands().begin(), scale.bands().end(),
                                        [](const MapBand& band) { return band.below_scan_error; });
     if (has_hatch) second.swatch(kFrame, true, "below the error assumed for scanning");
@@ -336,11 +338,10 @@ void write_figure(const Bite& bite, const std::array<Panel, 2>& panels, const Ma
   }
   const double unit = bite.units_per_micrometre();
   draw_legend(canvas, scale, unit, words);
-  constexpr double kBin = 50;  // micrometres
   std::array<std::optional<MapStatistics>, 2> found;
   std::vector<const MapStatistics*> maps;
   for (std::size_t i = 0; i < 2; ++i) {
-    found[i] = map_statistics(*panels[i].body, panels[i].map, kBin * unit, bite.region);
+    found[i] = map_statistics(*panels[i].body, panels[i].map, words.bin * unit, bite.region);
     if (found[i]) maps.push_back(&*found[i]);
   }
   const double square_millimetre = 1 / (bite.units_per_mm * bite.units_per_mm);
@@ -453,6 +454,8 @@ void write_change_figure(const Bite& after, const BiteComparison& comparison, co
   LegendWords words;
   words.heading = "Change of the distance, µm: red nearer, blue farther";
   words.axis = "change of the distance, µm";
+  words.bare = "not known";
+  words.bin = round_step(scale.high() / after.units_per_micrometre() / 20);
   words.is_empty = after.contacts.empty() && lost.empty();
   words.has_lost = !lost.empty();
   words.below.push_back(fmt::format(

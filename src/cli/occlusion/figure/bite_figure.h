@@ -18,7 +18,7 @@ struct FigureOptions {
   bool continuous = false;  ///< else in the bands of the preset
   /// Both ends of a continuous scale, mesh units: one range makes a series of figures comparable.
   /// Empty: from the least distance to the reach, rounded outwards.
-  std::optional<std::pair<double, double>> range;
+  std::optional<std::pair<double, double>> range = std::nullopt;
 };
 
 /// Returns the scale of a bite's figure.
