@@ -24,8 +24,8 @@ def main(ist, output):
         subprocess.run([ist, "occlusion", *jaws, *BITE, "-o", figure], check=True, capture_output=True)
         picture = Image.open(figure).convert("RGB")
         # The version of the program stands in the last line, and would differ with each commit.
-        picture = picture.crop((0, 0, picture.width, picture.height - 30))
-        picture.quantize(256, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(output, optimize=True)
+        picture = picture.crop((0, 0, picture.width, picture.height - 43))
+        picture.quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=4, dither=Image.Dither.NONE).save(output, optimize=True)
 
 
 if __name__ == "__main__":
