@@ -57,7 +57,7 @@ only "toml++" '#include [<"]toml' 'src/loop/scene/toml_document\.cpp' "src simd 
 only "GMP, an oracle of tests," '#include [<"]gmp' 'none' "src simd"
 only "xxHash" '#include [<"]xxh' 'src/(ist/base/checksum|hardware/xxh64)\.(h|cpp)' "src simd"
 only "zlib" '#include [<"]zlib' 'src/ist/mesh/format/inflate\.cpp' "src simd"
-only "libpng" '#include [<"]png\.h' 'src/cli/occlusion/map_picture\.cpp' "src simd"
+only "cairo" '#include [<"]cairo' 'src/cli/occlusion/figure/canvas\.cpp' "src simd"
 only "JSON" '#include [<"]nlohmann/' 'src/(answers/.*|cli/.*|viewer/engine/.*|import/gltf_check\.cpp|sweep/sweep_record\.cpp)' src
 only "the command line" '#include [<"]CLI/' 'src/cli/.*' src
 only "a catch" '(^|[^[:alnum:]_])catch \(' 'src/(cli/main\.cpp|import/ist_import\.cpp|ist/base/platform/thread_ranges\.cpp|loop/scene/scene_trees\.cpp|sweep/sweep_body\.cpp|c/guard\.(h|cpp)|viewer/engine/exports\.cpp)' "src --include=*.h --include=*.cpp"
@@ -73,5 +73,5 @@ twice=$(find src simd -name '*.h' -o -name '*.cpp' | xargs -n1 basename | sort |
 [ -z "$twice" ] || breach "two sources or headers share a name: $twice"
 never "a result names a folder of the machine that it was made on" '[ ="]/[a-zA-Z]+/[^" ]*' perf/results
 headers=$(($(grep -c '^ist/' src/package/public_headers.txt) + $(find src/{c,loop,models}/include -name '*.h' | wc -l)))
-[ "$headers" -le 35 ] || breach "$headers headers are installed: 35 are the most"
+[ "$headers" -le 36 ] || breach "$headers headers are installed: 36 are the most"
 exit $failed

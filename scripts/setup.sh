@@ -28,11 +28,11 @@ set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config
   libeigen3-dev libtbb-dev libhwy-dev libfmt-dev libxxhash-dev libtomlplusplus-dev zlib1g-dev
-  libcli11-dev nlohmann-json3-dev libpng-dev help2man
+  libcli11-dev nlohmann-json3-dev libcairo2-dev help2man
   libassimp-dev libzip-dev libpugixml-dev libseccomp-dev)
 bench="libbenchmark-dev python3-matplotlib"
 declare -A tasks=(
-  [--tests]="libgtest-dev libgmp-dev python3 python3-numpy locales git dpkg-dev"
+  [--tests]="libgtest-dev libgmp-dev libpng-dev python3 python3-numpy locales git dpkg-dev"
   [--style]="clang-format flake8"
   [--lint]="clang-format flake8 clang-tidy-14 pre-commit"
   [--bench]=$bench
@@ -51,7 +51,7 @@ declare -A tasks=(
     python3-distributed libfcl-dev libembree-dev libbenchmark-dev"
   [--viewer]="emscripten googletest chromium"
   [--cross]="clang-14 clang-16 emscripten googletest g++-aarch64-linux-gnu qemu-user libtbb-dev:arm64 libhwy-dev:arm64 libfmt-dev:arm64
-    libxxhash-dev:arm64 libtomlplusplus-dev:arm64 zlib1g-dev:arm64 libpng-dev:arm64 libgtest-dev:arm64"
+    libxxhash-dev:arm64 libtomlplusplus-dev:arm64 zlib1g-dev:arm64 libgtest-dev:arm64"
 )
 for argument in "${@/#--all/--tests --oracles --python --sweep --docs --viewer --hardware --package --style}"; do
   for task in ${argument:-none}; do

@@ -4,6 +4,7 @@
 
 #include "c/objects.h"
 #include "ist/capi/ist_measure.h"
+#include "ist/measure/comparison.h"
 #include "ist/measure/first_contact.h"
 #include "ist/measure/occlusion.h"
 #include "ist/measure/penetration.h"
@@ -156,6 +157,29 @@ void give_surface(const SurfaceOcclusion& found, double rotation_error,
   write_sized(values, out);
 }
 
+ist_pose_change pose_change_of(const PoseChange& found) {
+  ist_pose_change out{};
+  copy(found.about, out.about);
+  copy(found.translation, out.translation);
+  copy(found.rotation, out.rotation);
+  copy(found.axis, out.axis);
+  if (found.axis_point) copy(*found.axis_point, out.axis_point);
+  out.angle = found.angle;
+  out.along = found.along;
+  out.rotation_error = found.rotation_error;
+  out.turns = found.axis_point.has_value();
+  return out;
+}
+
+std::vector<PlacedContact> contacts_of(const ist_placed_contact* given, std::size_t count) {
+  std::vector<PlacedContact> contacts(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double(&at)[3] = given[i].centre;
+    contacts[i] = {{at[0], at[1], at[2]}, given[i].tooth};
+  }
+  return contacts;
+}
+
 }  // namespace
 
 static_assert(IST_FIXED_SELF_INTERSECTING == 1 && IST_MOVING_SELF_INTERSECTING == 2);
@@ -287,5 +311,35 @@ ist_status ist_query_occlusion(ist_query* query, const double pose[16],
     if (!whole) return cancelled(call);
     give_surface(found.fixed, found.rotation_error, of_fixed, *fixed);
     give_surface(found.moving, found.rotation_error, of_moving, *moving);
+  });
+}
+
+ist_status ist_motion_between(const double before[16], const double after[16],
+                              const double about[3], ist_pose_change* result) IST_NOEXCEPT {
+  return guarded(__func__, [&](Call& call) {
+    clear_sized(call, "result", result);
+    call.need("before", before);
+    call.need("after", after);
+    call.need("about", about);
+    if (call.status() != IST_OK) return;
+    write_sized(pose_change_of(ist::pose_change(to_isometry(before), to_isometry(after),
+                                                Eigen::Vector3d(about[0], about[1], about[2]))),
+                *result);
+  });
+}
+
+ist_status ist_match_contacts(const ist_placed_contact* before, size_t before_count,
+                              const ist_placed_contact* after, size_t after_count, double within,
+                              int32_t* matches) IST_NOEXCEPT {
+  return guarded(__func__, [&](Call& call) {
+    call.need_array("before", before, before_count);
+    call.need_array("after", after, after_count);
+    call.need_array("matches", matches, before_count);
+    if (call.status() != IST_OK) return;
+    for (const ist::ContactMatch& match : ist::match_contacts(
+             contacts_of(before, before_count), contacts_of(after, after_count), within)) {
+      if (!match.before) continue;
+      matches[*match.before] = match.after ? static_cast<std::int32_t>(*match.after) : -1;
+    }
   });
 }

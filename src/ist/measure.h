@@ -7,6 +7,7 @@
 #include "ist/base/api.h"
 
 #if __cplusplus >= 202002L  // else ist/base/api.h has said what is needed
+#include "ist/measure/comparison.h"
 #include "ist/measure/first_contact.h"
 #include "ist/measure/occlusion.h"
 #include "ist/measure/penetration.h"

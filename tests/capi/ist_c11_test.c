@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ist/capi/ist_measure.h"
 #include "ist/capi/ist_servo.h"
 
 #define CHECK(condition)                                                                           \
@@ -184,6 +185,20 @@ static void certify(ist_query* query) {
   free(pairs);
 }
 
+static void compare(void) {
+  const pose_at before = shifted(0, 0, 2), after = shifted(0, 0, 1.5);
+  const double about[3] = {1, 2, 3};
+  ist_pose_change change = {.struct_size = sizeof change};
+  IS(ist_motion_between(before.at, after.at, about, &change), IST_OK);
+  CHECK(change.translation[2] == -0.5 && change.along == 0.5 && change.turns == 0);
+  const ist_placed_contact one = {.centre = {1, 0, 0}}, other = {.centre = {2, 0, 0}};
+  int32_t match = 7;
+  IS(ist_match_contacts(&one, 1, &other, 1, 1, &match), IST_OK);
+  CHECK(match == 0);
+  IS(ist_match_contacts(&one, 1, &other, 1, 0.5, &match), IST_OK);
+  CHECK(match == -1);
+}
+
 static void misuse(ist_tree* tree, ist_query* query) {
   pose_at pose = shifted(9.5, 0, 0);
   ist_query_result result = {.struct_size = sizeof result};
@@ -264,6 +279,7 @@ int main(int argc, char** argv) {
   leaf_pairs(query);
   reduce(query);
   certify(query);
+  compare();
   IS(ist_query_free(query), IST_OK);
   press(argv[2]);
   puts("the whole life: fine");

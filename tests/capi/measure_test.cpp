@@ -5,6 +5,7 @@
 
 #include "c_bodies.h"
 #include "ist/capi/ist_measure.h"
+#include "ist/measure/comparison.h"
 #include "ist/measure/first_contact.h"
 #include "ist/measure/occlusion.h"
 #include "ist/measure/penetration.h"
@@ -258,6 +259,53 @@ TEST_F(CMeasure, OcclusionIsThatOfCppInArraysOfTheCaller) {
   EXPECT_EQ(name(ist_query_occlusion(query_, pose.data(), nullptr, nullptr, nullptr, nullptr,
                                      nullptr, &moving)),
             "null-argument");
+}
+
+TEST(CComparison, MotionIsThatOfCpp) {
+  const auto before = down_by(1, 2, 3);
+  const Eigen::Isometry3d first(Eigen::Translation3d(1, 2, 3));
+  const Eigen::Isometry3d last =
+      Eigen::Translation3d(0, 1, -2) * Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 2) / 3);
+  const double about[3] = {5, -4, 7};
+  auto result = sized<ist_pose_change>();
+  ASSERT_EQ(name(ist_motion_between(before.data(), last.data(), about, &result)), "ok");
+  const PoseChange wanted = pose_change(first, last, {5, -4, 7});
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(result.about[i], about[i]);
+    EXPECT_EQ(result.translation[i], wanted.translation[i]);
+    EXPECT_EQ(result.rotation[i], wanted.rotation[i]);
+    EXPECT_EQ(result.axis[i], wanted.axis[i]);
+    EXPECT_EQ(result.axis_point[i], (*wanted.axis_point)[i]);
+  }
+  EXPECT_EQ(result.angle, wanted.angle);
+  EXPECT_EQ(result.along, wanted.along);
+  EXPECT_EQ(result.turns, 1);
+  EXPECT_EQ(result.rotation_error, wanted.rotation_error);
+  ASSERT_EQ(name(ist_motion_between(before.data(), before.data(), about, &result)), "ok");
+  EXPECT_EQ(result.turns, 0);
+  EXPECT_EQ(result.axis_point[0], 0);
+  const double nowhere[3] = {0, std::nan(""), 0};
+  EXPECT_EQ(name(ist_motion_between(before.data(), last.data(), nowhere, &result)),
+            "argument-invalid");
+  EXPECT_EQ(result.about[0], 0);
+  const auto zero = std::array<double, 16>{};
+  EXPECT_EQ(name(ist_motion_between(before.data(), zero.data(), about, &result)), "pose-invalid");
+}
+
+TEST(CComparison, MatchesAreThoseOfCpp) {
+  const ist_placed_contact before[] = {{{0, 0, 0}, 16, 0}, {{9, 0, 0}, 0, 0}, {{20, 0, 0}, 0, 0}};
+  const ist_placed_contact after[] = {{{0.1, 0, 0}, 17, 0}, {{9.5, 0, 0}, 3, 0}};
+  std::vector<int32_t> matches(3, 7);
+  ASSERT_EQ(name(ist_match_contacts(before, 3, after, 2, 2, matches.data())), "ok");
+  EXPECT_EQ(matches, (std::vector<int32_t>{-1, 1, -1}));
+  ASSERT_EQ(name(ist_match_contacts(before, 3, nullptr, 0, 2, matches.data())), "ok");
+  EXPECT_EQ(matches, (std::vector<int32_t>{-1, -1, -1}));
+  EXPECT_EQ(name(ist_match_contacts(nullptr, 0, after, 2, 2, nullptr)), "ok");
+  EXPECT_EQ(name(ist_match_contacts(before, 3, after, 2, -1, matches.data())), "argument-invalid");
+  EXPECT_EQ(name(ist_match_contacts(before, 3, after, 2, std::nan(""), matches.data())),
+            "argument-invalid");
+  const ist_placed_contact bad[] = {{{0, HUGE_VAL, 0}, 0, 0}};
+  EXPECT_EQ(name(ist_match_contacts(bad, 1, after, 2, 2, matches.data())), "argument-invalid");
 }
 
 TEST_F(CMeasure, EndsMidwayToo) {

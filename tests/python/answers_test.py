@@ -63,6 +63,45 @@ class Command(Jaws):
             self.assertEqual(tree.to_bytes(), content)
 
 
+class Comparison(unittest.TestCase):
+    def test_motion_about_a_hinge(self):
+        before, hinge = pose_of([0, 0, 1], 0.7, [1, 2, 3]), np.array([0.0, 80.0, -20.0])
+        turn = pose_of([1, 0, 0], 0.02, [0, 0, 0])
+        turn[:3, 3] = hinge - turn[:3, :3] @ hinge
+        change = ist.motion_between(before, turn @ before, [3, -40, -60])
+        self.assertAlmostEqual(change.angle, 0.02, places=12)
+        np.testing.assert_allclose(change.rotation, [0.02, 0, 0], atol=1e-12)
+        np.testing.assert_allclose(change.axis_point, [3, 80, -20], atol=1e-8)
+        point = np.array([3, -40, -60, 1.0])
+        np.testing.assert_allclose(change.translation, (turn @ point - point)[:3], atol=1e-11)
+        still = ist.motion_between(before, before)
+        self.assertIsNone(still.axis_point)
+        self.assertEqual(still.about.tolist(), [0, 0, 0])
+
+    def test_matches(self):
+        before, after = [[0, 0, 0], [9, 0, 0], [20, 0, 0]], [[9.5, 0, 0], [0.25, 0, 0]]
+        self.assertEqual(ist.match_contacts(before, after).tolist(), [1, 0, -1])
+        self.assertEqual(ist.match_contacts(before, after, 0.3).tolist(), [1, -1, -1])
+        teeth = ist.match_contacts(before, after, before_teeth=[16, 0, 0], after_teeth=[26, 17])
+        self.assertEqual(teeth.tolist(), [-1, 0, -1])
+        self.assertEqual(ist.match_contacts(np.empty((0, 3)), after).tolist(), [])
+
+    def test_misuse(self):
+        for words, arguments, options in (
+            ("about", ("motion",), {"about": [1, 2]}),
+            ("within", ("match", [[0, 0, 0]], [[0, 0, 0]], -1), {}),
+            ("before", ("match", [[0, 0]], [[0, 0, 0]]), {}),
+            ("before_teeth has 2", ("match", [[0, 0, 0]], [[0, 0, 0]]), {"before_teeth": [1, 2]}),
+            ("after_teeth", ("match", [[0, 0, 0]], [[0, 0, 0]]), {"after_teeth": [-1]}),
+            ("centre of contact 0", ("match", [[0, np.nan, 0]], [[0, 0, 0]]), {}),
+        ):
+            with self.subTest(words), self.assertRaisesRegex(ist.InputError, words):
+                if arguments[0] == "motion":
+                    ist.motion_between(np.eye(4), np.eye(4), **options)
+                else:
+                    ist.match_contacts(*arguments[1:], **options)
+
+
 class Verbs(Jaws):
     def test_a_tree_keeps_the_frame_that_its_file_names(self):
         vertices, faces = box((1, 2, 3), (4, 6, 8))

@@ -32,6 +32,8 @@ parts: int = query.near_parts(np.eye(4), (0, 1), 9.0).count + near.count
 triangles: Optional[Tuple[int, int]] = query.distance(np.eye(4)).triangles
 outcome: str = query.first_contact(np.eye(4), np.eye(4), 0.1).outcome
 low: float = query.distance(np.eye(4), 0.1).lower + ist.rotation_error(np.eye(4))
+way: float = ist.motion_between(np.eye(4), np.eye(4), (1, 2, 3)).along
+matched: List[int] = ist.match_contacts([[0, 0, 0]], [[0, 0, 1]], 2.0, after_teeth=[16]).tolist()
 rows = query.rows(np.eye(4)[None], want=["intersects", "penetration"], progress=lambda part: None)
 force, torque, about = query.contacts(np.eye(4)).wrench(2.0)
 tree = ist.load(pathlib.Path("a.ist"))

@@ -56,6 +56,12 @@ const char* ending(FileFormat format) {
       return ".json";
     case FileFormat::kHtml:
       return ".html";
+    case FileFormat::kPng:
+      return ".png";
+    case FileFormat::kSvg:
+      return ".svg";
+    case FileFormat::kPdf:
+      return ".pdf";
   }
   return "";
 }

@@ -7,7 +7,7 @@
 namespace ist::answers {
 
 /// The format of a file that the command writes.
-enum class FileFormat { kVtp, kPly, kGlb, kCsv, kJsonl, kJson, kHtml };
+enum class FileFormat { kVtp, kPly, kGlb, kCsv, kJsonl, kJson, kHtml, kPng, kSvg, kPdf };
 
 /// Returns the ending of the files of a format, such as ".vtp".
 [[nodiscard]] const char* ending(FileFormat format);

@@ -117,7 +117,26 @@ void Bite::number_contacts() {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     for (const std::uint32_t k : contacts[i].fixed) fixed.contacts[k] = i + 1;
     for (const std::uint32_t k : contacts[i].moving) moving.contacts[k] = i + 1;
+    // Regions are in the order of their areas, the largest first.
+    const auto tooth_of = [](const BiteBody& body, const std::vector<std::uint32_t>& regions) {
+      return body.region_teeth.empty() || regions.empty() ? 0 : body.region_teeth[regions.front()];
+    };
+    contacts[i].fixed_tooth = tooth_of(fixed, contacts[i].fixed);
+    contacts[i].moving_tooth = tooth_of(moving, contacts[i].moving);
   }
+}
+
+std::vector<int> region_teeth_of(const SurfaceOcclusion& surface, const ToothLabels& labels) {
+  std::vector<int> teeth;
+  for (const ContactRegion& region : surface.regions) {
+    std::map<int, double> areas;
+    for (const ContactTriangle& part : region.triangles) areas[labels[part.triangle]] += part.area;
+    const auto most =
+        std::max_element(areas.begin(), areas.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    teeth.push_back(most == areas.end() ? 0 : most->first);
+  }
+  return teeth;
 }
 
 std::vector<Tooth> teeth_of(const SurfaceOcclusion& surface, const TriangleMesh& mesh,

@@ -44,6 +44,8 @@ struct BiteContact {
   double least_distance = 0;                          ///< signed, of all its regions
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();   ///< of the area of all its regions
   Eigen::Vector3d closest = Eigen::Vector3d::Zero();  ///< the point of the least distance
+  int fixed_tooth = 0,   ///< of its largest region on the fixed body (region_teeth_of()); 0: none
+      moving_tooth = 0;  ///< and on the moving body
 
   [[nodiscard]] bool on_both() const { return !fixed.empty() && !moving.empty(); }
 };
@@ -69,6 +71,11 @@ struct Tooth {
 [[nodiscard]] std::vector<Tooth> teeth_of(const SurfaceOcclusion& surface, const TriangleMesh& mesh,
                                           const ToothLabels& labels);
 
+/// Returns for each region of a surface the tooth that holds the most of its area: the lowest
+/// number of equal ones. 0 if that is no tooth. Precondition: a label for each triangle.
+[[nodiscard]] std::vector<int> region_teeth_of(const SurfaceOcclusion& surface,
+                                               const ToothLabels& labels);
+
 /// One body of a bite.
 struct BiteBody {
   std::string name;                 ///< the file's base name; "fixed" or "moving" with --no-names
@@ -83,6 +90,7 @@ struct BiteBody {
   std::vector<std::size_t> contacts;  ///< of each region, the number of its contact, from 1
   std::size_t on_both = 0;            ///< contacts with numbers up to this are on both bodies
   std::vector<Tooth> teeth;           ///< with labels
+  std::vector<int> region_teeth;      ///< with labels: region_teeth_of()
 
   /// Returns the box round the body, fixed coordinates.
   [[nodiscard]] Eigen::AlignedBox3d box() const {

@@ -9,6 +9,7 @@
 
 #include "answers/occlusion/bite_files.h"
 #include "answers/occlusion/bite_hints.h"
+#include "answers/occlusion/map_statistics.h"
 #include "answers/refusals.h"
 
 namespace ist::answers {
@@ -40,6 +41,7 @@ struct Row {
       depth_integral{}, least{};
   std::array<Number, 3> shares{};  // of the foundation, a thinner and a thicker one; per cent
   std::optional<Eigen::Vector3d> centre{}, closest{};
+  Number value{};  // of a map
 };
 
 // Writes rows in millimetres and micrometres.
@@ -69,7 +71,8 @@ class BiteTable {
                 "centre_z_mm",
                 "closest_x_mm",
                 "closest_y_mm",
-                "closest_z_mm"},
+                "closest_z_mm",
+                "value_um"},
                sign) {}
 
   void add(const Row& row) {
@@ -93,6 +96,7 @@ class BiteTable {
         table_.add(place ? Number(std::round(100 * mm * (*place)[axis]) / 100 + 0.0) : Number());
       }
     }
+    add_scaled(row.value, 1e3 * mm);
     table_.end_row();
   }
   void flush() { table_.flush(); }
@@ -161,6 +165,37 @@ void add_bands(BiteTable& table, const Bite& bite) {
   }
 }
 
+// How the distances of each body are distributed.
+void add_maps(BiteTable& table, const Bite& bite) {
+  for (const auto& [body, role] : {std::pair(&bite.fixed, "fixed"), {&bite.moving, "moving"}}) {
+    const std::optional<MapStatistics> map = map_statistics(*body, bite);
+    if (!map) continue;
+    const auto add = [&, role = role](const std::string& name, double value) {
+      Row row{"map", role};
+      row.name = name;
+      row.value = value;
+      table.add(row);
+    };
+    add("mean", map->mean);
+    add("standard deviation", map->deviation);
+    add("root mean square", map->root_mean_square);
+    add("least", map->least);
+    for (std::size_t i = 0; i < kPercentiles.size(); ++i) {
+      add(fmt::format("percentile {}", kPercentiles[i]), map->percentiles[i]);
+    }
+    add("most", map->most);
+    for (std::size_t i = 0; i < map->histogram.size(); ++i) {
+      const double unit = bite.units_per_micrometre();
+      const double from = map->from + static_cast<double>(i) * map->step;
+      Row row{"histogram", role};
+      row.from_um = rounded(from / unit);
+      row.to_um = rounded((from + map->step) / unit);
+      row.area = map->histogram[i];
+      table.add(row);
+    }
+  }
+}
+
 void add_sides(BiteTable& table, const Bite& bite) {
   for (const auto& [body, role] : {std::pair(&bite.fixed, "fixed"), {&bite.moving, "moving"}}) {
     for (const auto& [balance, division] :
@@ -222,6 +257,7 @@ void write_bite_csv(const Bite& bite, DecimalSign sign, OutputFile& file) {
   BiteTable table(bite, file, sign);
   add_totals(table, bite);
   add_bands(table, bite);
+  add_maps(table, bite);
   add_sides(table, bite);
   add_teeth(table, bite);
   add_contacts(table, bite);

@@ -1,9 +1,12 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "answers/commit.h"
 #include "answers/json_parts.h"
 #include "answers/occlusion/bite_files.h"
+#include "answers/occlusion/map_statistics.h"
 
 namespace ist::answers {
 namespace {
@@ -31,6 +34,10 @@ ordered_json json_of(const ContactRegion& region, std::size_t contact) {
   return out;
 }
 
+ordered_json tooth_or_null(int number) {
+  return number == 0 ? ordered_json(nullptr) : ordered_json(number);
+}
+
 ordered_json json_of(const BiteContact& contact, std::size_t number) {
   return {{"number", number},
           {"fixed", contact.fixed},
@@ -43,7 +50,10 @@ ordered_json json_of(const BiteContact& contact, std::size_t number) {
           {"share_thicker", contact.share_thicker},
           {"least_distance", contact.least_distance},
           {"centre", triple(contact.centre)},
-          {"closest", triple(contact.closest)}};
+          {"closest", triple(contact.closest)},
+          {"teeth",
+           {{"fixed", tooth_or_null(contact.fixed_tooth)},
+            {"moving", tooth_or_null(contact.moving_tooth)}}}};
 }
 
 ordered_json json_of(const Balance::Shares& shares, const Division& division) {
@@ -66,10 +76,32 @@ ordered_json json_of(const Division& division) {
           {"assumed", division.assumed}};
 }
 
+ordered_json json_of(const std::optional<MapStatistics>& map) {
+  if (!map) return nullptr;
+  ordered_json percentiles;
+  for (std::size_t i = 0; i < kPercentiles.size(); ++i) {
+    percentiles[fmt::format("{}", kPercentiles[i])] = map->percentiles[i];
+  }
+  return {{"area", map->area},
+          {"mean", map->mean},
+          {"deviation", map->deviation},
+          {"root_mean_square", map->root_mean_square},
+          {"least", map->least},
+          {"most", map->most},
+          {"percentiles", percentiles},
+          {"histogram", {{"from", map->from}, {"step", map->step}, {"areas", map->histogram}}}};
+}
+
+ordered_json json_of(const Eigen::AlignedBox3d& box) {
+  const Eigen::Vector3d &low = box.min(), &high = box.max();
+  return {low.x(), low.y(), low.z(), high.x(), high.y(), high.z()};
+}
+
 ordered_json json_of(const BiteBody& body, const Bite& bite) {
   const SurfaceOcclusion& surface = body.surface;
   ordered_json out{{"file", body.name}, {"hash", nullptr}, {"closed", body.closed}};
   if (body.hash) out["hash"] = *body.hash;
+  out["box"] = json_of(body.box());
   out["vertices"] = surface.vertices.size();
   std::size_t near = 0;
   for (const SurfaceDistance& one : surface.vertices) near += std::isnan(one.distance) ? 0U : 1U;
@@ -85,6 +117,7 @@ ordered_json json_of(const BiteBody& body, const Bite& bite) {
   out["depth_integral"] = surface.depth_integral;
   const std::optional<double> deepest = bite.known_depth(surface.depth_at_vertices);
   out["depth_at_vertices"] = deepest ? ordered_json(*deepest) : ordered_json(nullptr);
+  out["map"] = json_of(map_statistics(body, bite));
   out["regions"] = ordered_json::array();
   for (std::size_t i = 0; i < surface.regions.size(); ++i) {
     out["regions"].push_back(json_of(surface.regions[i], body.contacts[i]));
@@ -101,12 +134,6 @@ ordered_json json_of(const BiteBody& body, const Bite& bite) {
                             {"least_distance", or_null(tooth.least_distance)}});
   }
   return out;
-}
-
-ordered_json json_of(const std::optional<Eigen::AlignedBox3d>& box) {
-  if (!box) return nullptr;
-  const Eigen::Vector3d &low = box->min(), &high = box->max();
-  return {low.x(), low.y(), low.z(), high.x(), high.y(), high.z()};
 }
 
 ordered_json or_null(const std::optional<std::string>& text) {
@@ -158,7 +185,7 @@ ordered_json json_of(const Bite& bite) {
   for (std::size_t i = 0; i < bite.contacts.size(); ++i) {
     out["contacts"].push_back(json_of(bite.contacts[i], i + 1));
   }
-  out["region"] = json_of(bite.region);
+  out["region"] = bite.region ? json_of(*bite.region) : ordered_json(nullptr);
   out["warning"] = or_null(bite.warning);
   out["hint"] = or_null(bite.hint);
   out["checks"] = bite.checks;

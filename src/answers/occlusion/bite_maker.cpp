@@ -95,7 +95,9 @@ void fill(BiteBody& body, const SphereTree& tree, const Bite& bite, const ToothL
   body.areas = areas_of(body.surface, *bite.preset);
   body.sides = balance_of(body.surface, *body.mesh, body.to_fixed, bite.sides);
   body.fore_aft = balance_of(body.surface, *body.mesh, body.to_fixed, bite.fore_aft);
-  if (!labels.empty()) body.teeth = teeth_of(body.surface, *body.mesh, labels);
+  if (labels.empty()) return;
+  body.teeth = teeth_of(body.surface, *body.mesh, labels);
+  body.region_teeth = region_teeth_of(body.surface, labels);
 }
 
 void name(BiteBody& body, const MeshSource& source, const char* anonymous, bool no_names) {

@@ -20,30 +20,31 @@ inline constexpr const char* kSharesOnOneBody =
 /// says less than 1 µm, 0.01 mm², 0.001 mm³ or 0.1 %.
 class BiteNumbers {
  public:
-  explicit BiteNumbers(const Bite& bite) : bite_(bite) {}
+  explicit BiteNumbers(const Bite& bite) : BiteNumbers(bite.units_per_mm) {}
+  explicit BiteNumbers(double units_per_mm) : units_per_mm_(units_per_mm) {}
 
   /// A length in mesh units, as micrometres without their unit; a dash for NaN.
   [[nodiscard]] std::string micrometres(double units) const {
-    return std::isnan(units) ? "–" : whole(std::round(units / bite_.units_per_micrometre()));
+    return std::isnan(units) ? "–" : whole(std::round(units / units_per_micrometre()));
   }
   /// A length in mesh units, as micrometres, or millimetres from 10 mm up.
   [[nodiscard]] std::string length(double units) const {
-    return in_words(units / bite_.units_per_micrometre(), [](double x) { return std::round(x); });
+    return in_words(units / units_per_micrometre(), [](double x) { return std::round(x); });
   }
   /// Rounded outwards.
   [[nodiscard]] std::string interval(const DistanceInterval& of) const {
     if (of.lower == of.upper) return length(of.lower);
-    const double unit = bite_.units_per_micrometre();
+    const double unit = units_per_micrometre();
     return in_words(of.lower / unit, [](double x) { return std::floor(x); }) + " to " +
            in_words(of.upper / unit, [](double x) { return std::ceil(x); });
   }
   /// A length in mesh units, as millimetres: four digits at most, none finer than 0.001 mm.
   [[nodiscard]] std::string millimetres(double units) const {
-    return in_millimetres(units / bite_.units_per_mm);
+    return in_millimetres(units / units_per_mm_);
   }
   /// An interval as millimetres: one number if both ends read alike, else rounded outwards.
   [[nodiscard]] std::string millimetres(const DistanceInterval& of) const {
-    const double lower = of.lower / bite_.units_per_mm, upper = of.upper / bite_.units_per_mm;
+    const double lower = of.lower / units_per_mm_, upper = of.upper / units_per_mm_;
     if (lower <= 0 && upper > 0 && upper < 1e-3) {
       return upper < 1e-4 ? "less than 0.0001 mm" : "less than 0.001 mm";
     }
@@ -63,18 +64,18 @@ class BiteNumbers {
   }
   /// An area in mesh units squared, as mm² without their unit.
   [[nodiscard]] std::string area(double square_units) const {
-    const double area = square_units / (bite_.units_per_mm * bite_.units_per_mm);
+    const double area = square_units / (units_per_mm_ * units_per_mm_);
     return fmt::format("{:.{}f}", area, area < 10 ? 2 : 1);
   }
   /// Mesh units cubed, as mm³ without their unit.
   [[nodiscard]] std::string volume(double cubic_units) const {
-    const double volume = cubic_units / std::pow(bite_.units_per_mm, 3);
+    const double volume = cubic_units / std::pow(units_per_mm_, 3);
     return fmt::format("{:.{}f}", volume, volume < 1 ? 3 : 2);
   }
   /// A coordinate in mesh units, to 0.01 mm.
   [[nodiscard]] std::string coordinate(double units) const {
-    const double hundredths = std::round(100 * units / bite_.units_per_mm);
-    return fmt::format("{:g}", hundredths == 0 ? 0.0 : hundredths / 100 * bite_.units_per_mm);
+    const double hundredths = std::round(100 * units / units_per_mm_);
+    return fmt::format("{:g}", hundredths == 0 ? 0.0 : hundredths / 100 * units_per_mm_);
   }
   [[nodiscard]] std::string place(const Eigen::Vector3d& at) const {
     return fmt::format("({}, {}, {})", coordinate(at.x()), coordinate(at.y()), coordinate(at.z()));
@@ -112,7 +113,9 @@ class BiteNumbers {
     return fmt::format("{:g} mm", round(micrometres / 10) / 100);
   }
 
-  const Bite& bite_;
+  [[nodiscard]] double units_per_micrometre() const { return 1e-3 * units_per_mm_; }
+
+  double units_per_mm_;
 };
 
 }  // namespace ist::answers

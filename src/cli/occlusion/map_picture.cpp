@@ -1,15 +1,12 @@
 #include "cli/occlusion/map_picture.h"
 
-#include <png.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "answers/formats/poly_data.h"
-#include "ist/base/assert.h"
+#include "answers/occlusion/map_statistics.h"
 
 namespace ist::cli {
 
@@ -123,15 +120,14 @@ SeenMesh seen(const BiteBody& body, const BiteView& view, int width, int height)
   return mesh;
 }
 
-// Whether the distance may be taken as linear on a triangle: known at all corners, and nowhere
-// steeper than a distance can be.
-bool is_mapped(const BiteBody& body, const Triangle& t) {
+// Whether the numbers may be taken as linear on a triangle: known at all corners, and nowhere
+// steeper than they can be.
+bool is_mapped(const BiteBody& body, const ShownMap& map, const Triangle& t) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::uint32_t a = t[i], b = t[(i + 1) % 3];
     const double apart = (body.mesh->vertices[a] - body.mesh->vertices[b]).norm();
-    const double differ =
-        std::abs(body.surface.vertices[a].distance - body.surface.vertices[b].distance);
-    if (!(differ <= 1.001 * apart)) return false;  // nor with a NaN
+    const double differ = std::abs(map.numbers[a] - map.numbers[b]);
+    if (!(differ <= 1.001 * map.steepest * apart)) return false;  // nor with a NaN
   }
   return true;
 }
@@ -150,10 +146,11 @@ Vector3f shaded(const Vector3f& colour, const Vector3f& normal) {
 // The colours of the samples of a body.
 class Painter {
  public:
-  Painter(const BiteBody& body, const SeenMesh& mesh, std::span<const MapBand> bands)
-      : body_(body), mesh_(mesh), bands_(bands) {
+  Painter(const BiteBody& body, const ShownMap& map, const SeenMesh& mesh, const MapScale& scale)
+      : body_(body), map_(map), mesh_(mesh), scale_(scale) {
     mapped_.reserve(body.mesh->triangles.size());
-    for (const Triangle& t : body.mesh->triangles) mapped_.push_back(is_mapped(body, t) ? 1 : 0);
+    for (const Triangle& t : body.mesh->triangles)
+      mapped_.push_back(is_mapped(body, map, t) ? 1 : 0);
   }
   [[nodiscard]] Vector3f at(std::uint32_t triangle, int x, int y) const {
     if (triangle == DepthBuffer::kNothing) return kWhite;
@@ -170,20 +167,18 @@ class Painter {
   [[nodiscard]] Vector3f flat(std::uint32_t triangle, const Triangle& t, const Vector3f& weight,
                               int x, int y) const {
     if (mapped_[triangle] == 0) return vector_of(kBareSurface);
-    double distance = 0;
+    double number = 0;
     for (int i = 0; i < 3; ++i) {
-      distance += static_cast<double>(weight[i]) *
-                  body_.surface.vertices[t[static_cast<std::size_t>(i)]].distance;
+      number += static_cast<double>(weight[i]) * map_.numbers[t[static_cast<std::size_t>(i)]];
     }
-    const MapBand* band = band_of(distance, bands_);
-    if (band == nullptr) return vector_of(kBareSurface);
-    const bool hatched = band->below_scan_error && (x + y) % (6 * kFine) < 2 * kFine;
-    return hatched ? kWhite : vector_of(band->colour);
+    const bool lined = scale_.is_hatched(number) && (x + y) % (6 * kFine) < 2 * kFine;
+    return lined ? kWhite : vector_of(scale_.colour(number));
   }
 
   const BiteBody& body_;
+  const ShownMap& map_;
   const SeenMesh& mesh_;
-  std::span<const MapBand> bands_;
+  const MapScale& scale_;
   std::vector<std::uint8_t> mapped_;
 };
 
@@ -218,15 +213,15 @@ Eigen::Vector2d place_in(const BiteView& view, int width, int height,
   return {0.5 * width + view.across.dot(away), 0.5 * height - view.up.dot(away)};
 }
 
-Picture draw_map(const BiteBody& body, const BiteView& view, std::span<const MapBand> bands,
-                 int width, int height) {
+Picture draw_map(const BiteBody& body, const ShownMap& map, const BiteView& view,
+                 const MapScale& scale, int width, int height) {
   const SeenMesh mesh = seen(body, view, width, height);
   DepthBuffer buffer(kFine * width, kFine * height);
   for (std::uint32_t i = 0; i < body.mesh->triangles.size(); ++i) {
     const Triangle& t = body.mesh->triangles[i];
     buffer.draw(i, mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
   }
-  const Painter painter(body, mesh, bands);
+  const Painter painter(body, map, mesh, scale);
   Picture picture{width, height, {}};
   picture.rgb.resize(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   for (int y = 0; y < height; ++y) {
@@ -244,28 +239,19 @@ Picture draw_map(const BiteBody& body, const BiteView& view, std::span<const Map
       }
     }
   }
+  return picture;
+}
+
+Picture draw_map(const BiteBody& body, const BiteView& view, std::span<const MapBand> bands,
+                 int width, int height) {
+  const std::vector<double> distances = distances_of(body);
+  Picture picture = draw_map(body, ShownMap{distances}, view,
+                             MapScale::of_bands({bands.begin(), bands.end()}), width, height);
   for (std::size_t k = 0; k < body.contacts.size(); ++k) {
     draw_dot(picture, place_in(view, width, height, body.surface.regions[k].closest),
              body.contacts[k] <= body.on_both);
   }
   return picture;
-}
-
-std::string png_of(const Picture& picture) {
-  IST_ASSERT(picture.width > 0 && picture.height > 0);
-  png_image image = {};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = static_cast<png_uint_32>(picture.width);
-  image.height = static_cast<png_uint_32>(picture.height);
-  image.format = PNG_FORMAT_RGB;
-  std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(image), '\0');
-  png_alloc_size_t size = bytes.size();
-  if (png_image_write_to_memory(&image, bytes.data(), &size, 0, picture.rgb.data(), 0, nullptr) ==
-      0) {
-    throw std::runtime_error(std::string("a picture could not be encoded: ") + image.message);
-  }
-  bytes.resize(size);
-  return bytes;
 }
 
 }  // namespace ist::cli

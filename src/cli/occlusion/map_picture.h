@@ -7,6 +7,7 @@
 
 #include "answers/occlusion/bite.h"
 #include "answers/occlusion/map_colours.h"
+#include "answers/occlusion/map_scale.h"
 #include "cli/occlusion/bite_view.h"
 
 namespace ist::cli {
@@ -33,8 +34,17 @@ struct Picture {
 [[nodiscard]] Picture draw_map(const answers::BiteBody& body, const BiteView& view,
                                std::span<const answers::MapBand> bands, int width, int height);
 
-/// Returns the picture as the bytes of a PNG file: 8 bits, RGB. Throws std::bad_alloc, or a
-/// std::runtime_error with what libpng says.
-[[nodiscard]] std::string png_of(const Picture& picture);
+/// The numbers that a picture shows: one for each vertex, NaN if it is not known.
+struct ShownMap {
+  std::span<const double> numbers;
+  /// The most by which the numbers of two points differ, for each unit of their distance: 1 of a
+  /// distance, 2 of a change of distance. A triangle that is steeper stays bare.
+  double steepest = 1;
+};
+
+/// Draws a map likewise, in the colours of a scale, without dots.
+[[nodiscard]] Picture draw_map(const answers::BiteBody& body, const ShownMap& map,
+                               const BiteView& view, const answers::MapScale& scale, int width,
+                               int height);
 
 }  // namespace ist::cli

@@ -1,5 +1,6 @@
 #include "cli/page/page_blocks.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -17,6 +18,12 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr int kPageFormat = 1;
+
+// Whether a preset is one that the page has too.
+bool is_built_in(const Preset* preset) {
+  return std::any_of(presets().begin(), presets().end(),
+                     [preset](const Preset& each) { return &each == preset; });
+}
 
 }  // namespace
 
@@ -73,7 +80,7 @@ bool page_shows(const BiteQuestions& questions) {
   const SideOptions& sides = questions.sides;
   return sides.left.empty() && sides.front.empty() && sides.midline.empty() &&
          questions.labels_fixed.empty() && questions.labels_moving.empty() && !questions.region &&
-         questions.scanner_band == BiteQuestions{}.scanner_band;
+         is_built_in(questions.preset) && questions.scanner_band == BiteQuestions{}.scanner_band;
 }
 
 }  // namespace ist::cli

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "answers/json_file.h"
 #include "answers/refusals.h"
 #include "ist/base/angles.h"
 #include "ist/base/files.h"
@@ -154,42 +155,6 @@ GivenPose read_itk(const std::filesystem::path& file, const std::string& content
 constexpr const char* kRemedy =
     "give an array of objects with \"pose\", 16 numbers, column by column";
 
-// Discards all values, and finds the first place of a text that is not JSON.
-struct Locator : nlohmann::json_sax<nlohmann::json> {
-  std::string error;
-
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(std::int64_t) override { return true; }
-  bool number_unsigned(std::uint64_t) override { return true; }
-  bool number_float(double, const std::string&) override { return true; }
-  bool string(std::string&) override { return true; }
-  bool binary(nlohmann::json::binary_t&) override { return true; }
-  bool start_object(std::size_t) override { return true; }
-  bool key(std::string&) override { return true; }
-  bool end_object() override { return true; }
-  bool start_array(std::size_t) override { return true; }
-  bool end_array() override { return true; }
-  bool parse_error(std::size_t byte, const std::string&,
-                   const nlohmann::json::exception& e) override {
-    error = e.what();
-    const std::size_t name = error.find("] ");  // the parser's own name of the error ends there
-    if (name != std::string::npos) error.erase(0, name + 2);
-    constexpr int kOverflow = 406;  // the only error without a line
-    if (e.id == kOverflow) error += fmt::format(" at byte {}", byte);
-    return false;
-  }
-};
-
-nlohmann::json parse(const std::filesystem::path& file) {
-  const std::string text = InputFile(file).read_rest();
-  Locator locator;
-  if (!nlohmann::json::sax_parse(text, &locator)) {
-    refuse(ErrorCode::kInputInvalid, file, fmt::format("not JSON: {}; {}", locator.error, kRemedy));
-  }
-  return nlohmann::json::parse(text);
-}
-
 }  // namespace
 
 GivenPose read_matrix(const std::filesystem::path& file) {
@@ -207,17 +172,18 @@ GivenPose read_matrix(const std::filesystem::path& file) {
 }
 
 std::vector<Eigen::Isometry3d> read_poses(const std::filesystem::path& file) {
-  const nlohmann::json list = parse(file);
+  const nlohmann::ordered_json list = read_json(file, kRemedy);
   if (!list.is_array() || list.empty()) {
     refuse(ErrorCode::kInputInvalid, file, kRemedy);
   }
   std::vector<Eigen::Isometry3d> poses;
-  for (const nlohmann::json& item : list) {
+  for (const nlohmann::ordered_json& item : list) {
     const auto place = fmt::format("item {}", poses.size());
     const auto pose = item.is_object() ? item.find("pose") : item.end();
-    const bool is_matrix = pose != item.end() && pose->is_array() && pose->size() == 16 &&
-                           std::all_of(pose->begin(), pose->end(),
-                                       [](const nlohmann::json& x) { return x.is_number(); });
+    const bool is_matrix =
+        pose != item.end() && pose->is_array() && pose->size() == 16 &&
+        std::all_of(pose->begin(), pose->end(),
+                    [](const nlohmann::ordered_json& x) { return x.is_number(); });
     if (!is_matrix) {
       refuse(ErrorCode::kInputInvalid, file,
              place + ": give \"pose\" as an array of 16 numbers, column by column");

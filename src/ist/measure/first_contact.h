@@ -33,6 +33,18 @@ class IST_API Motion {
   /// `points` in moving coordinates. Cost: 5 ns a point.
   [[nodiscard]] double longest_way(std::span<const Eigen::Vector3d> points) const noexcept;
 
+  /// The unit vector along the axis, fixed coordinates: the direction of a translation. (0, 0, 1) if
+  /// nothing moves.
+  [[nodiscard]] Eigen::Vector3d axis() const noexcept { return {axis_[0], axis_[1], axis_[2]}; }
+  /// The axis' nearest point to the origin, fixed coordinates. The origin if nothing turns.
+  [[nodiscard]] Eigen::Vector3d point() const noexcept {
+    return {centre_[0], centre_[1], centre_[2]};
+  }
+  /// The turn about the axis, radians: 0 to pi of between().
+  [[nodiscard]] double angle() const noexcept { return angle_; }
+  /// The way along the axis, mesh units.
+  [[nodiscard]] double along() const noexcept { return along_; }
+
   /// How far the rotations of the given poses were from orthonormal: the larger rotation_error().
   [[nodiscard]] double rotation_error() const noexcept { return rotation_error_; }
 

@@ -22,6 +22,7 @@ from ._answers import (
     NearPairs,
     Occlusion,
     Penetration,
+    PoseChange,
     ServoBody,
     ServoState,
     ServoTick,
@@ -48,7 +49,7 @@ from ._errors import (
     MemoryLimitError,
 )
 from ._library import LIBRARY as _LIBRARY
-from ._measures import distance_map, rotation_error, signed_distance
+from ._measures import distance_map, match_contacts, motion_between, rotation_error, signed_distance
 from ._mesh import jaws, read_mesh
 from ._query import Query
 from ._servo import Servo

@@ -430,6 +430,25 @@ class World:
         self, kind: Optional[Type[BaseException]], value: Optional[BaseException], trace: Optional[TracebackType]
     ) -> None: ...
 
+class PoseChange(NamedTuple):
+    about: F8
+    translation: F8
+    rotation: F8
+    axis: F8
+    axis_point: Optional[F8]
+    angle: float
+    along: float
+    rotation_error: float
+
+def motion_between(before: ArrayLike, after: ArrayLike, about: ArrayLike = ...) -> PoseChange: ...
+def match_contacts(
+    before: ArrayLike,
+    after: ArrayLike,
+    within: float = ...,
+    *,
+    before_teeth: Optional[ArrayLike] = None,
+    after_teeth: Optional[ArrayLike] = None,
+) -> NDArray[np.int32]: ...
 def rotation_error(pose: ArrayLike) -> float: ...
 def signed_distance(
     tree: Tree,

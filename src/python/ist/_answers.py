@@ -171,6 +171,19 @@ class Occlusion(NamedTuple):
     rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|
 
 
+class PoseChange(NamedTuple):
+    """The motion of a body from one pose to another, fixed coordinates."""
+
+    about: np.ndarray  # (3,), the named point, at the first pose
+    translation: np.ndarray  # (3,), the way of that point, mesh units
+    rotation: np.ndarray  # (3,), along the axis of the turn, as long as its angle, radians
+    axis: np.ndarray  # (3,), of the screw, of unit length; 0 if nothing moves
+    axis_point: Optional[np.ndarray]  # (3,), the axis' nearest point to `about`; None if nothing turns
+    angle: float  # of the turn, radians, 0 to pi
+    along: float  # the way along the axis, mesh units
+    rotation_error: float  # of the given poses, the larger one: the largest entry of |RᵀR - I|
+
+
 class ServoBody(NamedTuple):
     """A body of a servo's scene."""
 

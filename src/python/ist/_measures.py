@@ -7,10 +7,11 @@ from ctypes import addressof
 import numpy as np
 
 from . import _c
-from ._answers import BodyOcclusion, FirstContact, Occlusion, Penetration
+from ._answers import BodyOcclusion, FirstContact, Occlusion, Penetration, PoseChange
 from ._arrays import address, budget_of, by_columns, count_of, floats, number_of, place_of, pose_of
 from ._c import (
     CONTACT_REGION,
+    PLACED_CONTACT,
     ROW,
     SURFACE_DISTANCE,
     FirstContact as FirstContactResult,
@@ -19,6 +20,7 @@ from ._c import (
     OcclusionOptions,
     Occlusion as OcclusionSums,
     Penetration as PenetrationResult,
+    PoseChange as PoseChangeResult,
     RowsOptions,
 )
 from ._errors import check, need_word, refuse, refuse_type
@@ -328,3 +330,64 @@ def distance_map(body, other, pose=None, *, reach=np.inf, out=None, progress=Non
         )
         follower.finish(status)
     return found
+
+
+def motion_between(before, after, about=(0.0, 0.0, 0.0)):
+    """The motion that takes a body from one pose to another: as six numbers about a point, and as a screw.
+
+    p_fixed = pose @ p_moving. about: a point that the body carries from its first pose, fixed coordinates.
+
+    >>> import ist, numpy as np
+    >>> pose = np.eye(4)
+    >>> pose[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
+    >>> change = ist.motion_between(np.eye(4), pose, [2, 0, 0])
+    >>> change.translation.round(9).tolist(), round(float(np.degrees(change.angle)), 9)
+    ([-2.0, 2.0, 0.0], 90.0)
+    """
+    first, last = pose_of(before, "before"), pose_of(after, "after")
+    point, result = floats(about, (3,), "about"), PoseChangeResult()
+    check(LIBRARY.ist_motion_between(address(first), address(last), address(point), addressof(result)))
+    return PoseChange(
+        np.array(result.about),
+        np.array(result.translation),
+        np.array(result.rotation),
+        np.array(result.axis),
+        np.array(result.axis_point) if result.turns else None,
+        result.angle,
+        result.along,
+        result.rotation_error,
+    )
+
+
+def _placed(contacts, teeth, what):
+    centres = floats(contacts, (None, 3), what)
+    placed = np.zeros(len(centres), PLACED_CONTACT)
+    placed["centre"] = centres
+    if teeth is not None:
+        labels = floats(teeth, (None,), f"{what}_teeth")
+        if len(labels) != len(centres):
+            refuse(f"{what}_teeth has {len(labels)} numbers, and {what} has {len(centres)} contacts: pass one for each")
+        if not np.all((labels >= 0) & (labels < 2**31) & (labels == np.floor(labels))):
+            refuse(f"{what}_teeth: pass whole numbers from 0 on")
+        placed["tooth"] = labels
+    return placed
+
+
+def match_contacts(before, after, within=2.0, *, before_teeth=None, after_teeth=None):
+    """Matches the contacts of two bites by their centres, (N, 3), on the fixed body: the nearest two first.
+
+    Returns for each contact of the first bite the index of its contact in the second one, or -1 if it is lost. An index of
+    the second bite that is missing is a new contact. Contacts with different teeth, other than 0, are never matched.
+
+    >>> import ist
+    >>> ist.match_contacts([[0, 0, 0], [9, 0, 0]], [[5, 0, 0], [0.5, 0, 0]]).tolist()
+    [1, -1]
+    """
+    first, second = _placed(before, before_teeth, "before"), _placed(after, after_teeth, "after")
+    matches = np.empty(len(first), np.int32)
+    check(
+        LIBRARY.ist_match_contacts(
+            address(first), len(first), address(second), len(second), number_of(within, "within"), address(matches)
+        )
+    )
+    return matches

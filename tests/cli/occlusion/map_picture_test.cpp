@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cli/occlusion/bites.h"
+#include "cli/occlusion/figure/canvas.h"
 #include "support/shapes.h"
 
 namespace ist::test {

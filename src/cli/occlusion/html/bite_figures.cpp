@@ -1,14 +1,16 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
 #include <vector>
 
 #include "answers/occlusion/map_colours.h"
+#include "answers/occlusion/map_scale.h"
 #include "cli/occlusion/bite_view.h"
+#include "cli/occlusion/figure/canvas.h"
 #include "cli/occlusion/html/html_parts.h"
 #include "cli/occlusion/html/html_text.h"
 #include "cli/occlusion/map_picture.h"
+#include "cli/occlusion/view_words.h"
 #include "ist/base/parallel.h"
 
 namespace ist::cli {
@@ -18,41 +20,22 @@ using namespace answers;
 namespace {
 
 constexpr int kWidth = 900, kHeight = 700;  // pixels
-// More numbers than this would hide the map; the first contacts are the largest.
-constexpr std::size_t kNumbered = 40;
-
 std::string text_at(double x, double y, const char* anchor, const std::string& text) {
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor,
                      text);
 }
 
-// The name of the side that a direction points to; empty where it lies between.
-std::string side_at(const Bite& bite, const Eigen::Vector3d& direction) {
-  for (const Division* division : {&bite.sides, &bite.fore_aft}) {
-    const double along = division->direction.dot(direction);
-    if (along > 0.7) return escaped(division->first);
-    if (along < -0.7) return escaped(division->second);
-  }
-  return "";
-}
-
 std::string edge_names(const Bite& bite, const BiteView& view) {
-  return text_at(kWidth - 10, kHeight / 2.0, "end", side_at(bite, view.across)) +
-         text_at(10, kHeight / 2.0, "start", side_at(bite, -view.across)) +
-         text_at(kWidth / 2.0, 20, "middle", side_at(bite, view.up)) +
-         text_at(kWidth / 2.0, kHeight - 8, "middle", side_at(bite, -view.up));
+  return text_at(kWidth - 10, kHeight / 2.0, "end", escaped(side_at(bite, view.across))) +
+         text_at(10, kHeight / 2.0, "start", escaped(side_at(bite, -view.across))) +
+         text_at(kWidth / 2.0, 20, "middle", escaped(side_at(bite, view.up))) +
+         text_at(kWidth / 2.0, kHeight - 8, "middle", escaped(side_at(bite, -view.up)));
 }
 
 // A bar of 1, 2 or 5 times a power of ten millimetres, about a sixth of the picture.
 std::string scale_bar(const Bite& bite, const BiteView& view) {
   const double most = kWidth / 6.0 * view.pixel / bite.units_per_mm;
-  double length = std::pow(10, std::floor(std::log10(most)));
-  for (const double step : {5.0, 2.0}) {
-    if (step * length <= most) {
-      length *= step;
-      break;
-    }
-  }
+  const double length = round_step(most);
   const double pixels = length * bite.units_per_mm / view.pixel;
   const std::string bar = fmt::format("M12 {} v8 h{:.2f} v-8", kHeight - 22, pixels);
   return fmt::format("<path class=\"halo\" d=\"{0}\" />\n<path d=\"{0}\" />\n", bar) +

@@ -207,6 +207,46 @@ IST_C_API ist_status ist_query_occlusion(ist_query* query, const double pose[16]
                                          const ist_occlusion_arrays* moving_arrays,
                                          ist_occlusion* fixed, ist_occlusion* moving) IST_NOEXCEPT;
 
+/** The motion of a body from one pose to another, fixed mesh coordinates: as six numbers about a
+ * named point, and as a screw. */
+typedef struct ist_pose_change {
+  size_t struct_size;    /**< the size of this struct, bytes */
+  double about[3],       /**< the named point, at the first pose */
+      translation[3],    /**< the way of that point, mesh units */
+      rotation[3];       /**< along the axis of the turn, as long as its angle, radians */
+  double axis[3],        /**< of the screw, of unit length; 0 if nothing moves */
+      axis_point[3];     /**< the axis' nearest point to `about`; 0 if nothing turns */
+  double angle,          /**< of the turn, radians, 0 to pi */
+      along;             /**< the way along the axis, mesh units */
+  double rotation_error; /**< of the given poses, the larger one: as in ist_query_result */
+  int32_t turns;         /**< 1: the body turns, and has an axis_point */
+  int32_t reserved;      /**< zero */
+} ist_pose_change;
+
+/** Gives the motion that takes a body from the pose `before` to the pose `after`. `about` is a
+ * point that the body carries from its first pose, fixed mesh coordinates. Errors:
+ * IST_POSE_INVALID, IST_ARGUMENT_INVALID for a point that is not finite. */
+IST_C_API ist_status ist_motion_between(const double before[16], const double after[16],
+                                        const double about[3],
+                                        ist_pose_change* result) IST_NOEXCEPT;
+
+/** A contact of a bite, by its place. */
+typedef struct ist_placed_contact {
+  double centre[3]; /**< fixed mesh coordinates, such as `centre` of ist_contact_region */
+  int32_t tooth;    /**< its label; 0: it has none */
+  int32_t reserved; /**< zero */
+} ist_placed_contact;
+
+/** Matches the contacts of two bites by their places on the fixed body: the two nearest centres
+ * first, then the nearest of the rest, as far as `within` mesh units. Contacts with different teeth
+ * are never matched. `matches` takes for each contact of the first bite the index of its contact in
+ * the second one, or -1 if it is lost. A contact of the second bite that nobody names is new.
+ * Errors: IST_ARGUMENT_INVALID for a centre that is not finite, and a `within` that is negative or
+ * NaN. Cost: 2 ns for each pair of contacts. */
+IST_C_API ist_status ist_match_contacts(const ist_placed_contact* before, size_t before_count,
+                                        const ist_placed_contact* after, size_t after_count,
+                                        double within, int32_t* matches) IST_NOEXCEPT;
+
 /** What ist_query_rows asks at every pose. */
 typedef struct ist_rows_options {
   size_t struct_size; /**< the size of this struct, bytes */
