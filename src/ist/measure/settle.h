@@ -53,7 +53,7 @@ struct IST_API Settlement {
     kRestsLevel,   ///< the same, but nothing holds the body in the directions of `level`
     kLeftTheBox,   ///< the body still closes at a border of the box
     kStopped,      ///< the steps or the caller ended the search; the pose is free
-    kNotBalanced,  ///< the search ended at a free pose without a proof that it rests
+    kUnknown,      ///< the search ended at a free pose, without a proof that it rests
     kInvalidPose,  ///< the given pose is no rigid motion
     kNoFreePose,   ///< the bodies intersect at the given pose, and no free pose was found near it
     kBusy,         ///< another thread is using the query
