@@ -39,7 +39,7 @@ struct SettleOptions {
 struct SettleContact {
   Eigen::Vector3d point,  ///< on the fixed surface, fixed coordinates; the middle of the forces
       normal;             ///< unit vector to the moving body, fixed axes; the middle of the forces
-  double force = 0;       ///< sum of the forces, as a part of the load; 0 or more
+  double force = 0;       ///< length of the sum of its forces, as a part of the load
   double gap = 0;         ///< the least distance of its triangles, mesh units
   TrianglePair triangles = {};  ///< the nearest pair
   std::uint32_t pairs = 0;      ///< pairs of triangles
@@ -88,8 +88,8 @@ struct IST_API Settlement {
   double margin = -std::numeric_limits<double>::infinity();
   /// Whether the body rocks: the margin is negative, or the contacts lie on a line.
   bool rocks = false;
-  /// Directions in which no contact with a force holds the body: way of the load point and rotation
-  /// vector, of size 1.
+  /// Directions in which no contact holds the body, or only one way without a force: way of the
+  /// load point and rotation vector, of size 1.
   std::vector<Vector6> level = {};
 
   Eigen::Vector3d load_point = Eigen::Vector3d::Zero();  ///< moving mesh coordinates

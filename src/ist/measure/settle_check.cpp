@@ -29,6 +29,7 @@ constexpr double kLeastForce = 1e-4, kLeastHold = 1e-2;
 // Normals of one group differ by no more, a cosine; contacts that carry go against the load by
 // more, a cosine.
 constexpr double kAlike = 0.85, kCarries = 0.1;
+constexpr std::size_t kMostIdle = 256;  // contacts without a force that are looked at
 constexpr std::size_t kNearPairs = 1 << 14, kMostNearPairs = 1 << 18;
 
 // Parts of both surfaces that are within a contact's gap of each other.
@@ -224,9 +225,12 @@ class Proof {
     return load;
   }
 
-  [[nodiscard]] double rest_of(std::span<const BalanceVector> columns,
-                               const std::vector<BalanceForce>& forces) const {
-    BalanceVector rest = load_vector();
+  [[nodiscard]] static Vector6 wrench_of(const Row& row) { return Vector6::Map(row.wrench.data()); }
+
+  [[nodiscard]] static double rest_of(std::span<const BalanceVector> columns,
+                                      const BalanceVector& load,
+                                      const std::vector<BalanceForce>& forces) {
+    BalanceVector rest = load;
     for (const auto& [column, force] : forces) {
       for (std::size_t i = 0; i < 6; ++i) rest[i] += force * columns[column][i];
     }
@@ -238,7 +242,7 @@ class Proof {
   std::vector<BalanceForce> balance_load() {
     for (const Row& row : rows_) columns_.push_back(row.wrench);
     const std::vector<BalanceForce> forces = balance(columns_, load_vector());
-    settled_.residual = rest_of(columns_, forces);
+    settled_.residual = rest_of(columns_, load_vector(), forces);
     settled_.remaining = claim_.reach * settled_.residual;
     settled_.second_order = 0;
     for (const auto& [row, force] : forces) {
@@ -260,7 +264,8 @@ class Proof {
     }
     if (columns.size() == columns_.size()) return SettleProof::kNone;
     const std::vector<BalanceForce> forces = balance(columns, load_vector());
-    return rest_of(columns, forces) <= kMostResidual ? SettleProof::kLeaves : SettleProof::kNone;
+    return rest_of(columns, load_vector(), forces) <= kMostResidual ? SettleProof::kLeaves
+                                                                    : SettleProof::kNone;
   }
 
   // The directions across all wrenches that have a force.
@@ -284,8 +289,7 @@ class Proof {
     std::vector<Vector6> wrenches;
     for (const auto& [row, force] : forces) {
       if (!(force > kLeastForce)) continue;
-      Vector6 wrench;
-      for (Eigen::Index i = 0; i < 6; ++i) wrench[i] = rows_[row].wrench[std::size_t(i)];
+      const Vector6 wrench = wrench_of(rows_[row]);
       wrenches.push_back(wrench / length(wrench));
     }
     // The one that is most across comes next.
@@ -305,6 +309,25 @@ class Proof {
       }
     };
     take(wrenches, kLeastHold);
+    // Contacts without a force hold as well if they do so together, from both sides.
+    std::vector<BalanceVector> idle;
+    for (const Row& row : rows_) {
+      if (row.bend > contact_ || idle.size() == kMostIdle) continue;
+      const Vector6 wrench = wrench_of(row);
+      const Vector6 rest = across(wrench / length(wrench));
+      if (!(length(rest) > kLeastHold)) continue;
+      idle.emplace_back();
+      for (std::size_t i = 0; i < 6; ++i) idle.back()[i] = rest[static_cast<Eigen::Index>(i)];
+    }
+    wrenches.clear();
+    for (const BalanceVector& one : idle) {
+      const Vector6 wrench(Vector6::Map(one.data()));
+      if (length(across(wrench)) > kLeastHold &&
+          rest_of(idle, one, balance(idle, one)) <= kMostResidual) {
+        wrenches.push_back(wrench);
+        take(wrenches, kLeastHold);
+      }
+    }
     const std::size_t rank = basis.size();
     std::vector<Vector6> axes;
     for (std::size_t i = 0; i < 6; ++i) {
@@ -314,6 +337,8 @@ class Proof {
     for (std::size_t i = rank; i < basis.size(); ++i) {
       Vector6 level = basis[i];
       for (Eigen::Index k = 3; k < 6; ++k) level[k] /= claim_.radius;
+      const Vector turn = claim_.frame.turn_at(claim_.at, {level[3], level[4], level[5]});
+      for (Eigen::Index k = 0; k < 3; ++k) level[3 + k] = turn[k];
       settled_.level.push_back(level);
     }
   }
@@ -363,6 +388,7 @@ class Proof {
       const bool pushes = contact.force > 0 && length > 0;
       contact.point = pushes ? scaled(1 / contact.force, contact.point) : places[g];
       contact.normal = pushes ? scaled(1 / length, contact.normal) : directions[g];
+      contact.force = pushes ? length : 0;
     }
     std::stable_sort(groups.begin(), groups.end(),
                      [](const auto& a, const auto& b) { return a.force > b.force; });

@@ -66,6 +66,12 @@ Eigen::Isometry3d SettleFrame::pose_at(const Vector6& at) const noexcept {
   return pose;
 }
 
+Vector SettleFrame::turn_at(const Vector6& at, const Vector& change) const noexcept {
+  const Vector r = turn_of(at);
+  const Coefficients c = coefficients_of(length_in_order(r));
+  return turned(r, change, c.second, c.third);
+}
+
 Vector6 SettleFrame::bound_at(const Vector6& at, const Vector& normal,
                               const Vector& arm) const noexcept {
   const Vector r = turn_of(at);

@@ -22,6 +22,9 @@ class SettleFrame {
   /// point, as a bound of the change of the coordinates.
   [[nodiscard]] Vector6 bound_at(const Vector6& at, const Eigen::Vector3d& normal,
                                  const Eigen::Vector3d& arm) const noexcept;
+  /// Returns the turn about the load point that a small change of the last three coordinates makes.
+  [[nodiscard]] Eigen::Vector3d turn_at(const Vector6& at,
+                                        const Eigen::Vector3d& change) const noexcept;
 
  private:
   double rotation_[3][3];  // of the pose
