@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "answers/json_parts.h"
 #include "ist/base/angles.h"
@@ -36,7 +37,7 @@ Json screw_of(const Settlement& settled) {
   const Eigen::Vector3d point = start + 0.5 * (across + cosine / sine * axis.cross(across));
   return {{"axis", point_json(axis)},
           {"point", point_json(point)},
-          {"degrees", angle * 180 / EIGEN_PI},
+          {"degrees", angle * 180 / std::numbers::pi},
           {"along", along}};
 }
 
