@@ -211,7 +211,7 @@ class Verbs(Jaws):
         np.testing.assert_allclose(found.pose[2], [0, 0, 1, 0], atol=1e-3)
         held = query.settle(start, closing=[0, 0, -1], at=[3, 2, 5], hold=["x", "y", "roll", "pitch", "yaw"], within=(3, 0.1))
         self.assertEqual(held.status, "rests")
-        np.testing.assert_array_equal(held.pose[:3, :3], start[:3, :3])
+        np.testing.assert_allclose(held.pose[:3, :3], start[:3, :3], rtol=0, atol=1e-15)
         self.assertEqual(query.settle(pose_of([1, 0, 0], 0, [0, 0, 50]), closing=[0, 0, -1]).status, "left the box")
 
     def test_a_ball_meets_a_plate_at_its_lowest_point(self):
