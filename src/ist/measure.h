@@ -11,6 +11,5 @@
 #include "ist/measure/occlusion.h"
 #include "ist/measure/penetration.h"
 #include "ist/measure/settle.h"
-#include "ist/measure/settle_all.h"
 #include "ist/measure/signed_distance.h"
 #endif

@@ -1,4 +1,4 @@
-#include "ist/measure/settle_all.h"
+#include "ist/measure/settle.h"
 
 #include <gtest/gtest.h>
 

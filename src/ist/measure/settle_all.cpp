@@ -1,5 +1,3 @@
-#include "ist/measure/settle_all.h"
-
 #include <algorithm>
 #include <memory>
 #include <mutex>
@@ -10,6 +8,7 @@
 #include "ist/base/ordered_vector.h"
 #include "ist/base/parallel.h"
 #include "ist/base/rigid_move.h"
+#include "ist/measure/settle.h"
 
 namespace ist {
 namespace {

@@ -28,7 +28,6 @@
 #include "ist/base/files.h"
 #include "ist/base/rigid_move.h"
 #include "ist/measure/first_contact.h"
-#include "ist/measure/settle_all.h"
 #include "sweep/philox.h"
 
 namespace ist::cli {
