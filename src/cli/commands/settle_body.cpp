@@ -1,5 +1,3 @@
-#include "ist/measure/settle.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -28,6 +26,7 @@
 #include "ist/base/files.h"
 #include "ist/base/rigid_move.h"
 #include "ist/measure/first_contact.h"
+#include "ist/measure/settle.h"
 #include "sweep/philox.h"
 
 namespace ist::cli {
@@ -41,6 +40,8 @@ using SettleStatus = Settlement::Status;
 constexpr std::array kFreedoms = {"x", "y", "z", "roll", "pitch", "yaw"};
 constexpr std::uint64_t kMostStarts = 100'000;
 constexpr double kDegree = std::numbers::pi / 180;
+// The default box: mm and rad.
+constexpr double kLargestWay = 2, kLargestTurn = 3 * kDegree;
 
 struct SettleArguments {
   BodyFiles files;
@@ -91,9 +92,8 @@ double millimetre_of(const Bodies& bodies) {
 // first is that one itself.
 std::vector<Eigen::Isometry3d> spread(const Eigen::Isometry3d& pose,
                                       const SettleArguments& arguments,
-                                      const SettleOptions& options, double millimetre) {
-  const double way = 0.5 * (options.largest_way > 0 ? options.largest_way : 2 * millimetre);
-  const double turn = 0.5 * (options.largest_turn > 0 ? options.largest_turn : 3 * kDegree);
+                                      const SettleOptions& options) {
+  const double way = 0.5 * options.largest_way, turn = 0.5 * options.largest_turn;
   const Eigen::Vector3d load = RigidMove(pose)(*options.load_point);
   std::vector<Eigen::Isometry3d> poses = {pose};
   for (std::uint64_t i = 1; i < arguments.starts; ++i) {
@@ -268,7 +268,12 @@ void run(const SettleArguments& arguments) {
   }
   options.load_point = settled.load_point;
   const double mm = millimetre_of(bodies);
-  const std::vector<Eigen::Isometry3d> poses = spread(given.pose, arguments, options, mm);
+  if (options.largest_way == 0) options.largest_way = kLargestWay * mm;
+  if (options.largest_turn == 0) options.largest_turn = kLargestTurn;
+  const std::vector<Eigen::Isometry3d> poses = spread(given.pose, arguments, options);
+  // A start that is spread goes as far back, and opens first if it is not free.
+  options.largest_way *= 2;
+  options.largest_turn = std::min(2 * options.largest_turn, 90 * kDegree);
   const std::vector<Settlement> all =
       settle_all(query, poses, options, shown_by(progress, "settling"));
   const std::vector<SettleGroup> groups = group_settled(all, options.closing, mm);
