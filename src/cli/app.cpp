@@ -48,6 +48,7 @@ std::unique_ptr<CLI::App> make_app() {
   add_collide(*app);
   add_approach(*app);
   add_occlusion(*app);
+  add_settle(*app);
   add_compare(*app);
   add_run(*app);
   add_view(*app);

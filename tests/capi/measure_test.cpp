@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <vector>
 
 #include "c_bodies.h"
@@ -9,6 +10,7 @@
 #include "ist/measure/first_contact.h"
 #include "ist/measure/occlusion.h"
 #include "ist/measure/penetration.h"
+#include "ist/measure/settle.h"
 #include "ist/models/models.h"
 #include "listener.h"
 #include "support/shapes.h"
@@ -213,6 +215,53 @@ TEST_F(CMeasure, FirstContactIsThatOfCpp) {
   EXPECT_EQ(name(ist_query_first_contact(query_, &motion, 1e-4, nullptr, nullptr, &result)),
             "null-argument");
   EXPECT_EQ(result.outcome, IST_FIRST_UNKNOWN);
+}
+
+TEST_F(CMeasure, SettleIsThatOfCpp) {
+  const auto pose = down_by(0.3, 0, 6.5);
+  auto options = sized<ist_settle_options>();
+  options.closing[2] = -1;
+  options.has_load_point = 1;
+  options.held = IST_HOLD_X | IST_HOLD_Y | IST_HOLD_YAW;
+  auto result = sized<ist_settlement>();
+  std::vector<ist_settle_contact> contacts(2);
+  ASSERT_EQ(name(ist_query_settle(query_, pose.data(), &options, nullptr, contacts.data(),
+                                  contacts.size(), &result)),
+            "ok");
+  SettleOptions same;
+  same.closing = {0, 0, -1};
+  same.load_point = Eigen::Vector3d(0, 0, 0);
+  same.held = {true, true, false, false, false, true};
+  const Settlement wanted =
+      settle(cpp_, Eigen::Isometry3d(Eigen::Translation3d(0.3, 0, 6.5)), same);
+  ASSERT_FALSE(wanted.contacts.empty());
+  EXPECT_EQ(result.is_free, 1);
+  EXPECT_EQ(std::memcmp(result.pose, wanted.pose().matrix().data(), sizeof result.pose), 0);
+  EXPECT_EQ(result.moved[0], 0);
+  EXPECT_EQ(result.closed, wanted.closed);
+  EXPECT_EQ(result.remaining, wanted.remaining);
+  EXPECT_EQ(result.residual, wanted.residual);
+  EXPECT_EQ(result.levels, static_cast<int32_t>(wanted.level.size()));
+  EXPECT_EQ(result.contacts, wanted.contacts.size());
+  EXPECT_EQ(contacts[0].force, wanted.contacts[0].force);
+  EXPECT_EQ(contacts[0].fixed, wanted.contacts[0].triangles.fixed);
+  EXPECT_EQ(result.load_guessed, 0);
+  EXPECT_EQ(result.unit_guessed, 1);
+  const auto far = down_by(0, 0, 60);
+  ASSERT_EQ(name(ist_query_settle(query_, far.data(), &options, nullptr, nullptr, 0, &result)),
+            "ok");
+  EXPECT_EQ(result.status, IST_SETTLE_LEFT_THE_BOX);
+  int reports = 0;
+  const auto progress = sized<ist_progress>({0, stop, &reports});
+  EXPECT_EQ(name(ist_query_settle(query_, pose.data(), &options, &progress, nullptr, 0, &result)),
+            "cancelled");
+  EXPECT_EQ(result.status, IST_SETTLE_UNKNOWN);
+  options.held = 64;
+  EXPECT_EQ(name(ist_query_settle(query_, pose.data(), &options, nullptr, nullptr, 0, &result)),
+            "argument-invalid");
+  options.held = IST_HOLD_Z;
+  EXPECT_EQ(name(ist_query_settle(query_, pose.data(), &options, nullptr, nullptr, 0, &result)),
+            "argument-invalid");
 }
 
 TEST_F(CMeasure, OcclusionIsThatOfCppInArraysOfTheCaller) {

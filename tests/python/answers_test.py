@@ -238,6 +238,21 @@ class Verbs(Jaws):
         none = self.query.first_contact(JAW_POSES[0], JAW_POSES[0], 1e-3)
         self.assertEqual((none.outcome, none.place, none.normal), ("none", None, None))
 
+    def test_a_box_settles_on_a_plate(self):
+        query = ist.Query(ist.build(box([-20, -20, -2], [20, 20, 0])), ist.build(box([-5, -5, 0], [5, 5, 10])))
+        start = pose_of([1, 0, 0], 0.01, [0.5, 0.25, 0.6])
+        found = query.settle(start, closing=[0, 0, -1], at=[3, 2, 5])
+        self.assertEqual((found.status, found.free, found.rocks), ("rests level", True, False))
+        self.assertEqual(found.level.shape, (3, 6))
+        self.assertAlmostEqual(found.margin, 2, 3)
+        self.assertAlmostEqual(found.contacts["force"].sum(), 1, 5)
+        self.assertTrue(0 <= found.distance[0] <= found.distance[1] <= 1e-3)
+        np.testing.assert_allclose(found.pose[2], [0, 0, 1, 0], atol=1e-3)
+        held = query.settle(start, closing=[0, 0, -1], at=[3, 2, 5], hold=["x", "y", "roll", "pitch", "yaw"], within=(3, 0.1))
+        self.assertEqual(held.status, "rests")
+        np.testing.assert_allclose(held.pose[:3, :3], start[:3, :3], rtol=0, atol=1e-15)
+        self.assertEqual(query.settle(pose_of([1, 0, 0], 0, [0, 0, 50]), closing=[0, 0, -1]).status, "left the box")
+
     def test_a_ball_meets_a_plate_at_its_lowest_point(self):
         plate = ist.build(box([-3, -3, -1], [3, 3, 0]), 0.5)
         wedge = ([[0, 0, 0], [1, 0, 1], [-1, 1, 1], [-1, -1, 1]], [[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]])

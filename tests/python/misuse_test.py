@@ -201,7 +201,8 @@ class Queries(Misuse):
                  self.query.occlusion, lambda pose: ist.occlusion(self.tree, self.tree, pose),
                  lambda pose: ist.distance_map(self.tree, self.tree, pose), lambda pose: self.query.penetration(pose, 0.1),
                  lambda pose: self.query.near_pairs(pose, 0.1), lambda pose: self.query.near_parts(pose, (0, 0), 0.1),
-                 lambda pose: self.query.first_contact(pose, EYE, 0.1), lambda pose: self.query.first_contact(EYE, pose, 0.1)]
+                 lambda pose: self.query.first_contact(pose, EYE, 0.1), lambda pose: self.query.first_contact(EYE, pose, 0.1),
+                 self.query.settle]
         mirrored, scaled, nan, row = EYE.copy(), 2 * EYE, EYE.copy(), EYE.copy()
         mirrored[0, 0], nan[1, 3], row[3, 0] = -1, np.nan, 1
         scaled[3, 3] = 1

@@ -14,6 +14,7 @@ void add_export(CLI::App& app);
 void add_collide(CLI::App& app);
 void add_approach(CLI::App& app);
 void add_occlusion(CLI::App& app);
+void add_settle(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_run(CLI::App& app);
 void add_view(CLI::App& app);

@@ -67,8 +67,9 @@ void FeatureList::clear() noexcept {
 }
 
 void FeatureList::find(std::span<const NearPair> near, const Eigen::Isometry3d& pose, double margin,
-                       Which which) noexcept {
+                       Which which, double tolerance) noexcept {
   clear();
+  tolerance_ = tolerance;
   const bool minima = which == Which::kMinima;
   if (list(near, pose, margin, minima, 0)) return;
   clear();
@@ -86,8 +87,8 @@ bool FeatureList::list(std::span<const NearPair> near, const Eigen::Isometry3d& 
       // triangles has one.
       const Eigen::Vector3d normal = pair.direction();
       const Eigen::Vector3d back = -(pose.linear().transpose() * normal);
-      if (!fixed_.leaves(fixed_.part(fixed, pair.fixed_part), normal, kTolerance) ||
-          !moving_.leaves(moving_.part(moving, pair.moving_part), back, kTolerance)) {
+      if (!fixed_.leaves(fixed_.part(fixed, pair.fixed_part), normal, tolerance_) ||
+          !moving_.leaves(moving_.part(moving, pair.moving_part), back, tolerance_)) {
         continue;
       }
     }
@@ -120,8 +121,8 @@ bool FeatureList::add(const NearPair& near, const SurfacePart& fixed, const Surf
   if (!(square_in_order(normal) > 0)) return true;
   if (minima) {
     const Eigen::Vector3d back = -(pose.linear().transpose() * normal);
-    if (!fixed_.leaves(fixed, normal, fixed_flat ? kSeam : kTolerance) ||
-        !moving_.leaves(moving, back, moving_flat ? kSeam : kTolerance)) {
+    if (!fixed_.leaves(fixed, normal, fixed_flat ? kSeam : tolerance_) ||
+        !moving_.leaves(moving, back, moving_flat ? kSeam : tolerance_)) {
       return true;
     }
   }

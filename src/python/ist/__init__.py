@@ -26,13 +26,14 @@ from ._answers import (
     ServoBody,
     ServoState,
     ServoTick,
+    Settlement,
     SweepPart,
     SweepStatus,
     SweepTable,
     TrianglePairs,
     WorldAnswer,
 )
-from ._c import CONTACT, CONTACT_REGION, LEAF_PAIR, NEAR_PAIR, ROW, SERVO_CONTACT, SURFACE_DISTANCE, TRIANGLE_PAIR, WORLD_PAIR
+from ._c import CONTACT, CONTACT_REGION, LEAF_PAIR, NEAR_PAIR, ROW, SERVO_CONTACT, SETTLE_CONTACT, SURFACE_DISTANCE, TRIANGLE_PAIR, WORLD_PAIR
 from ._c import IST_ANSWER_NEAR as NEAR, IST_ANSWER_NO as NO, IST_ANSWER_UNKNOWN as UNKNOWN, IST_ANSWER_YES as YES
 from ._c import IST_NO_TRIANGLE as NO_TRIANGLE
 from ._errors import (

@@ -28,6 +28,7 @@ NEAR_PAIR: np.dtype[np.void]
 CONTACT: np.dtype[np.void]
 SURFACE_DISTANCE: np.dtype[np.void]
 CONTACT_REGION: np.dtype[np.void]
+SETTLE_CONTACT: np.dtype[np.void]
 ROW: np.dtype[np.void]
 SERVO_CONTACT: np.dtype[np.void]
 WORLD_PAIR: np.dtype[np.void]
@@ -210,6 +211,29 @@ class FirstContact(NamedTuple):
     place: Optional[Tuple[F8, F8]]
     normal: Optional[F8]
 
+class Settlement(NamedTuple):
+    status: Literal["rests", "rests level", "left the box", "stopped", "no free pose", "unknown"]
+    pose: F8
+    free: bool
+    contacts: Records
+    distance: Tuple[float, float]
+    residual: float
+    remaining: float
+    second_order: float
+    margin: float
+    rocks: bool
+    level: F8
+    moved: F8
+    closed: float
+    load_point: F8
+    radius: float
+    reach: float
+    load_guessed: bool
+    unit_guessed: bool
+    opened: bool
+    steps: int
+    rotation_error: float
+
 class BodyOcclusion(NamedTuple):
     distances: Records
     regions: Records
@@ -309,6 +333,18 @@ class Query:
         seconds: float = 0.0,
         progress: Optional[Follow] = None,
     ) -> FirstContact: ...
+    def settle(
+        self,
+        pose: Optional[ArrayLike] = None,
+        *,
+        closing: ArrayLike = (0.0, 0.0, 1.0),
+        at: Optional[ArrayLike] = None,
+        hold: Sequence[Literal["x", "y", "z", "roll", "pitch", "yaw"]] = (),
+        within: Optional[Tuple[float, float]] = None,
+        reach: float = 0.0,
+        steps: int = 0,
+        progress: Optional[Follow] = None,
+    ) -> Settlement: ...
     def occlusion(
         self,
         pose: Optional[ArrayLike] = None,

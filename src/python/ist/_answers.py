@@ -150,6 +150,32 @@ class FirstContact(NamedTuple):
     normal: Optional[np.ndarray]  # (3,), unit vector from the fixed to the moving body there; 0 with "touches at start"
 
 
+class Settlement(NamedTuple):
+    """Where a body settled, and the proof. docs/settle.md explains the numbers."""
+
+    status: str  # "rests", "rests level", "left the box", "stopped", "no free pose", "unknown"
+    pose: np.ndarray  # (4, 4)
+    free: bool  # proven: no triangles meet, and no body lies inside the other
+    contacts: np.ndarray  # SETTLE_CONTACT, the strongest first
+    distance: Tuple[float, float]  # of the surfaces
+    residual: float  # what the forces leave of the load, as a part of it
+    remaining: float  # a motion of a size of `reach` closes no farther, to first order
+    second_order: float  # and what curves may add
+    margin: float  # the load is so far inside the contacts' hull; negative outside
+    rocks: bool
+    level: np.ndarray  # (n, 6), directions that nothing holds: way of the load point and rotation vector
+    moved: np.ndarray  # (6,), from the given pose
+    closed: float  # way of the load point along the load
+    load_point: np.ndarray  # (3,), moving mesh coordinates
+    radius: float
+    reach: float
+    load_guessed: bool
+    unit_guessed: bool
+    opened: bool  # the given pose was not free
+    steps: int
+    rotation_error: float
+
+
 class BodyOcclusion(NamedTuple):
     """One surface against the other body."""
 

@@ -7,12 +7,13 @@ from ctypes import addressof
 import numpy as np
 
 from . import _c
-from ._answers import BodyOcclusion, FirstContact, Occlusion, Penetration, PoseChange
+from ._answers import BodyOcclusion, FirstContact, Occlusion, Penetration, PoseChange, Settlement
 from ._arrays import address, budget_of, by_columns, count_of, floats, number_of, place_of, pose_of
 from ._c import (
     CONTACT_REGION,
     PLACED_CONTACT,
     ROW,
+    SETTLE_CONTACT,
     SURFACE_DISTANCE,
     FirstContact as FirstContactResult,
     Motion,
@@ -22,6 +23,8 @@ from ._c import (
     Penetration as PenetrationResult,
     PoseChange as PoseChangeResult,
     RowsOptions,
+    SettleOptions,
+    Settlement as SettlementResult,
 )
 from ._errors import check, need_word, refuse, refuse_type
 from ._follow import Follower
@@ -30,6 +33,10 @@ from ._tree import need_tree
 
 OUTCOMES = (None, "contact", "none", "grazing", "touches at start", "inside at start", "stopped")
 NOT_CLOSED = (None, "fixed", "moving")
+SETTLED = ("unknown", "rests", "rests level", "left the box", "stopped", "no free pose")
+FREEDOMS = ("x", "y", "z", "roll", "pitch", "yaw")
+# The most contacts of an answer: more are left out, the weakest first.
+MOST_CONTACTS = 1024
 SELF_INTERSECTING = (None, "fixed", "moving", "both")
 QUESTIONS = {
     "intersects": _c.IST_ASK_INTERSECTS,
@@ -121,6 +128,71 @@ def first_contact(self, start, stop, tolerance, *, distances=0, seconds=0.0, pro
             result.rotation_error,
             (np.array(result.place_fixed), np.array(result.place_moving)) if result.place_known else None,
             np.array(result.normal) if result.place_known else None,
+        )
+    finally:
+        self._lock.release()
+
+
+def settle(
+    self,
+    pose=None,
+    *,
+    closing=(0.0, 0.0, 1.0),
+    at=None,
+    hold=(),
+    within=None,
+    reach=0.0,
+    steps=0,
+    progress=None,
+):
+    """Moves the moving body along `closing` until it rests on the fixed one, and proves that it rests.
+
+    p_fixed = pose @ p_moving. at: the load point, coordinates of the moving body; by default the middle of what touches first. hold: some of
+    "x", "y", "z", "roll", "pitch" and "yaw". within: (way in mesh units, angle in radians), the box round the pose; by default 2 mm and 3 degrees.
+    reach: length of the motions that the proof speaks of; by default 50 µm. steps: the most steps. One rest is one of several: the start decides.
+    """
+    handle = self._enter()
+    try:
+        begin = pose_of(np.eye(4) if pose is None else pose)
+        options = SettleOptions(closing=tuple(floats(closing, (3,), "closing")), reach=number_of(reach, "reach"), steps=count_of(steps, "steps"))
+        if at is not None:
+            options.load_point = tuple(floats(at, (3,), "at"))
+            options.has_load_point = 1
+        for word in [hold] if isinstance(hold, str) else hold:
+            need_word(word, FREEDOMS, "hold")
+            options.held |= 1 << FREEDOMS.index(word)
+        if within is not None:
+            way, turn = floats(within, (2,), "within").tolist()
+            options.largest_way, options.largest_turn = way, turn
+        result = SettlementResult()
+        contacts = np.zeros(MOST_CONTACTS, SETTLE_CONTACT)
+        with Follower(progress) as follower:
+            status = LIBRARY.ist_query_settle(
+                handle, address(begin), addressof(options), follower.address, address(contacts), len(contacts), addressof(result)
+            )
+            follower.finish(status)
+        return Settlement(
+            SETTLED[result.status],
+            np.array(result.pose).reshape(4, 4).T.copy(),
+            result.is_free == 1,
+            contacts[: result.contacts].copy(),
+            (result.distance_lower, result.distance_upper),
+            result.residual,
+            result.remaining,
+            result.second_order,
+            result.margin,
+            result.rocks == 1,
+            np.array(result.level).reshape(6, 6)[: result.levels].copy(),
+            np.array(result.moved),
+            result.closed,
+            np.array(result.load_point),
+            result.radius,
+            result.reach,
+            result.load_guessed == 1,
+            result.unit_guessed == 1,
+            result.opened == 1,
+            result.steps,
+            result.rotation_error,
         )
     finally:
         self._lock.release()

@@ -364,6 +364,7 @@ class Query(Lone):
 
     penetration = _measures.penetration
     first_contact = _measures.first_contact
+    settle = _measures.settle
     occlusion = _measures.occlusion_of
     rows = _measures.rows
 
