@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kSize = std::tuple_size_v<BalanceVector>;
 constexpr int kMostRounds = 300;
 // A column that gains less, as a part of the load, gains nothing.
-constexpr double kLeastGain = 1e-12;
+constexpr double kLeastPart = 1e-12;
 // A column whose part across the others is shorter depends on them.
 constexpr double kDependent = 1e-10;
 
@@ -67,7 +67,7 @@ std::vector<BalanceForce> balance(std::span<const BalanceVector> columns,
   std::vector<std::size_t> chosen;
   std::vector<double> forces;
   std::vector<bool> is_out(columns.size());  // chosen, or refused as dependent
-  const double least = kLeastGain * std::sqrt(dot(load, load));
+  const double least = kLeastPart * std::sqrt(dot(load, load));
   for (int round = 0; round < kMostRounds; ++round) {
     BalanceVector rest = wanted;
     for (std::size_t k = 0; k < chosen.size(); ++k) add(rest, -forces[k], columns[chosen[k]]);

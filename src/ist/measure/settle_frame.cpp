@@ -29,7 +29,7 @@ Coefficients coefficients_of(double angle) noexcept {
   return {first, second, third};
 }
 
-Vector vector(const double (&from)[3]) noexcept { return {from[0], from[1], from[2]}; }
+Vector frame_vector(const double (&from)[3]) noexcept { return {from[0], from[1], from[2]}; }
 
 Vector turn_of(const Vector6& at) noexcept { return {at[3], at[4], at[5]}; }
 
@@ -62,7 +62,7 @@ Eigen::Isometry3d SettleFrame::pose_at(const Vector6& at) const noexcept {
     const Vector column(rotation_[0][j], rotation_[1][j], rotation_[2][j]);
     pose.linear().col(j) = turned(r, column, c.first, c.second);
   }
-  pose.translation() = difference(load_at(at), RigidMove(pose).turned(vector(load_)));
+  pose.translation() = difference(load_at(at), RigidMove(pose).turned(frame_vector(load_)));
   return pose;
 }
 

@@ -28,7 +28,7 @@ constexpr double kKept = 0.1, kPoor = 0.3, kGood = 0.7;
 constexpr double kLong = 0.7;
 constexpr double kMostPull = 1e4;
 constexpr double kWithin = 0.999;
-constexpr std::size_t kNearPairs = 1 << 14, kMostNearPairs = 1 << 18;
+constexpr std::size_t kSearchPairs = 1 << 14, kMostSearchPairs = 1 << 18;
 constexpr std::size_t kFeatures = 4096;
 
 const TriangleMesh& mesh_of(const SphereTree& tree, const char* name) {
@@ -55,7 +55,7 @@ SettleSearch::SettleSearch(Query& query, const detail::SettleBodies& bodies,
       frame_(frame),
       load_(load),
       pull_(Vector6::Zero()),
-      near_(kNearPairs),
+      near_(kSearchPairs),
       features_(bodies.fixed, bodies.moving, kFeatures),
       nearest_(kFeatures + 12),
       trust_(kFirstTrust * load.millimetre),
@@ -86,7 +86,7 @@ bool SettleSearch::look(const Vector6& at) {
     const NearPairsResult found = query_.near_pairs(frame_.pose_at(at), margin, near_);
     near_count_ = static_cast<std::size_t>(std::min<std::uint64_t>(found.near_pairs, near_.size()));
     if (found.status != QueryStatus::kDone) return false;
-    if (!found.truncated || near_.size() >= kMostNearPairs) return true;
+    if (!found.truncated || near_.size() >= kMostSearchPairs) return true;
     near_.resize(2 * near_.size());
   }
 }
