@@ -1,9 +1,8 @@
-#include "ist/measure/settle.h"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
+#include "ist/measure/settle.h"
 #include "measure/body_pair.h"
 #include "measure/settle_shapes.h"
 #include "support/random.h"

@@ -33,8 +33,8 @@ class IST_API Motion {
   /// `points` in moving coordinates. Cost: 5 ns a point.
   [[nodiscard]] double longest_way(std::span<const Eigen::Vector3d> points) const noexcept;
 
-  /// The unit vector along the axis, fixed coordinates: the direction of a translation. (0, 0, 1) if
-  /// nothing moves.
+  /// The unit vector along the axis, fixed coordinates: the direction of a translation. (0, 0, 1)
+  /// if nothing moves.
   [[nodiscard]] Eigen::Vector3d axis() const noexcept { return {axis_[0], axis_[1], axis_[2]}; }
   /// The axis' nearest point to the origin, fixed coordinates. The origin if nothing turns.
   [[nodiscard]] Eigen::Vector3d point() const noexcept {

@@ -171,7 +171,7 @@ struct Nearness {
 // pair has: a weight reaches a fifth of its rate, a torque to a thirtieth.
 constexpr Nearness kOfAPair{0.2, 0.03};
 // And the bound of a sum has all its pairs change by as much the same way, before and after.
-constexpr Nearness kOfASum{0.05, 0.004};
+constexpr Nearness kOfASum{0.05, 0.0039};
 // If springs begin at a margin below 2, the steepest fade by depth adds to the rate.
 constexpr double kOfLoads = 0.3;
 
