@@ -106,7 +106,7 @@ template <typename Site>
 bool extend(Support<Site>& support, const Site& site) noexcept {
   constexpr double kSlack = 1 + 1e-12;
   const unsigned sets = 1u << support.count;
-  Sized best{{}, std::numeric_limits<double>::infinity()};
+  Sized best{Vector3d::Zero(), std::numeric_limits<double>::infinity()};
   unsigned chosen = sets;
   for (int others = std::is_same_v<Site, Ball> ? 0 : 1; others <= 3; ++others) {
     for (const unsigned* set = kSets[others]; *set < sets; ++set) {
