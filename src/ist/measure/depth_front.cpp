@@ -106,7 +106,7 @@ bool DepthFront::search_front(DepthSearch& search, const std::array<double, 2>& 
     if (search.is_settled(one.bound)) continue;
     if (!search.goes_on()) break;
     if (one.level == kTriangle) {
-      const NearList near = entries_[one.entry].near;
+      const FewTriangles near = entries_[one.entry].near;
       given_.push_back(
           {one.entry, search.add_triangle(one.side, one.index, one.bound, near, near.count > 0)});
     } else if (one.level == 0) {
@@ -264,13 +264,13 @@ void DepthFront::hand_over(DepthSearch& search) {
       search.leave(one.bound);
       continue;
     }
-    NearList near;
+    FewTriangles near;
     for (const Settled& other : settled_) {
       if (near.count == kNeighbours) break;
       if (other.cluster == one.cluster && other.side == one.side) near.add(other.near);
     }
     const std::size_t handed = search.add_triangle(one.side, one.index, one.bound, near, false);
-    const NearList& found = search.handed()[handed].near;
+    const FewTriangles& found = search.handed()[handed].near;
     if (found.count > near.count) {
       settled_.push_back({one.cluster, found.triangle[near.count], one.side});
     }

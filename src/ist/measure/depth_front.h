@@ -55,7 +55,7 @@ class DepthFront {
     std::uint32_t index;
     std::uint8_t level, side;
     std::uint16_t taken;
-    NearList near;
+    FewTriangles near;
   };
   // What is to be looked at: children of a node or a cluster, or a triangle of a cluster.
   struct Open {

@@ -100,7 +100,7 @@ void DepthSearch::add_surfaces() {
 }
 
 std::size_t DepthSearch::add_triangle(std::uint32_t side, std::uint32_t triangle, double bound,
-                                      const NearList& near, bool has_served) {
+                                      const FewTriangles& near, bool has_served) {
   const std::size_t at = handed_.size();
   handed_.push_back({0, near});
   add_handed(side, {corners(side, triangle), triangle, static_cast<std::uint32_t>(at), 0}, bound,

@@ -16,7 +16,7 @@ namespace ist {
 
 /// Triangles of a body that were nearest to points of one triangle, at most six: they bound the
 /// depths of its pieces.
-struct NearList {
+struct FewTriangles {
   std::array<std::uint32_t, 6> triangle{};
   std::uint8_t count = 0, next = 0;
 
@@ -57,7 +57,7 @@ class DepthSearch {
   /// A triangle that was handed over: no point of its finished pieces is deeper than `bound`.
   struct Handed {
     double bound;
-    NearList near;
+    FewTriangles near;
   };
 
   /// Forgets all earlier questions. Keeps the memory. `question` must outlive the search.
@@ -76,7 +76,7 @@ class DepthSearch {
   /// Adds a triangle that is nowhere deeper than `bound`. `near` may bound it; `has_served` says
   /// that its first one did before. Returns the triangle's place in handed().
   std::size_t add_triangle(std::uint32_t side, std::uint32_t triangle, double bound,
-                           const NearList& near, bool has_served);
+                           const FewTriangles& near, bool has_served);
   /// Returns the least bound of a triangle by the balls near its middle.
   [[nodiscard]] double bound_by_balls(std::uint32_t side, std::uint32_t triangle) const {
     return depth_by_balls(side, corners(side, triangle));
