@@ -201,8 +201,10 @@ class Proof {
     }
     double of_fixed = 0, of_moving = 0;
     const auto neighbours = [](const std::vector<TrianglePair>& all, std::uint32_t of) {
-      return std::span(std::lower_bound(all.begin(), all.end(), TrianglePair{of, 0}),
-                       std::upper_bound(all.begin(), all.end(), TrianglePair{of, 0xFFFFFFFF}));
+      const auto begin = std::lower_bound(all.begin(), all.end(), TrianglePair{of, 0});
+      const auto end = std::upper_bound(begin, all.end(), TrianglePair{of, 0xFFFFFFFF});
+      return std::span<const TrianglePair>(all).subspan(
+          static_cast<std::size_t>(begin - all.begin()), static_cast<std::size_t>(end - begin));
     };
     for (const TrianglePair& pair : neighbours(around.by_moving, moving)) {
       of_fixed =
