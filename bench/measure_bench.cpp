@@ -139,28 +139,24 @@ Query make_query() {
 Eigen::Isometry3d lifted(double dz) { return Eigen::Isometry3d(Eigen::Translation3d(0, 0, dz)); }
 
 template <class Body>
+benchmark::internal::Benchmark* registered(const std::string& name, const Body& body) {
+  return benchmark::RegisterBenchmark(name.c_str(),
+                                      [=](benchmark::State& state) {
+                                        const ScopedThreadLimit one(1);
+                                        body(state);
+                                        state.SetLabel(pair_name());
+                                      })
+      ->Unit(benchmark::kMicrosecond);
+}
+
+template <class Body>
 void add(const std::string& name, const Body& body) {
-  benchmark::RegisterBenchmark(name.c_str(),
-                               [=](benchmark::State& state) {
-                                 const ScopedThreadLimit one(1);
-                                 body(state);
-                                 state.SetLabel(pair_name());
-                               })
-      ->Unit(benchmark::kMicrosecond)
-      ->UseRealTime();
+  registered(name, body)->UseRealTime();
 }
 
 template <class Body>
 void add_manual(const std::string& name, const Body& body) {
-  benchmark::RegisterBenchmark(name.c_str(),
-                               [=](benchmark::State& state) {
-                                 const ScopedThreadLimit one(1);
-                                 body(state);
-                                 state.SetLabel(pair_name());
-                               })
-      ->Unit(benchmark::kMicrosecond)
-      ->UseManualTime()
-      ->Iterations(1);
+  registered(name, body)->UseManualTime()->Iterations(1);
 }
 
 void distances(benchmark::State& state, const Eigen::Isometry3d& pose) {

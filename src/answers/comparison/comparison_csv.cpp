@@ -200,24 +200,19 @@ void add_contact(ChangeTable& table, const ContactChange& contact) {
   if (!teeth.empty()) row.teeth = teeth;
   const RecordedContact& of = contact.after != nullptr ? *contact.after : *contact.before;
   row.body = of.on_fixed && of.on_moving ? "both" : of.on_fixed ? "fixed" : "moving";
-  if (const RecordedContact* one = contact.before) {
-    row.before = one->number;
-    row.area.before = one->area;
-    row.overlap.before = one->overlap;
-    row.depth.before = one->depth();
-    row.least.before = one->least_distance;
-    row.share.before = 100 * one->share;
-    row.centre_before = one->centre;
-  }
-  if (const RecordedContact* one = contact.after) {
-    row.after = one->number;
-    row.area.after = one->area;
-    row.overlap.after = one->overlap;
-    row.depth.after = one->depth();
-    row.least.after = one->least_distance;
-    row.share.after = 100 * one->share;
-    row.centre_after = one->centre;
-  }
+  const auto put = [&row](const RecordedContact* one, Measure Both::*when, auto& number,
+                          auto& centre) {
+    if (one == nullptr) return;
+    number = one->number;
+    row.area.*when = one->area;
+    row.overlap.*when = one->overlap;
+    row.depth.*when = one->depth();
+    row.least.*when = one->least_distance;
+    row.share.*when = 100 * one->share;
+    centre = one->centre;
+  };
+  put(contact.before, &Both::before, row.before, row.centre_before);
+  put(contact.after, &Both::after, row.after, row.centre_after);
   if (contact.before != nullptr && contact.after != nullptr) row.moved = contact.moved;
   table.add(row);
 }
