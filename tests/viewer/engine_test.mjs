@@ -272,7 +272,7 @@ async function short(use) {
 /** Calls `what` with more and more memory until it fits. After each end it calls `check`, which may take all the memory it needs. */
 function untilItFits(memory, what, check) {
   let ended = 0;
-  for (let limit = memory.bytes; ; limit = Math.max(limit, memory.bytes) + 4e6) {
+  for (let limit = memory.bytes; ; limit = Math.max(limit, memory.bytes) + 2e6) {
     memory.limit = limit;
     try {
       what();

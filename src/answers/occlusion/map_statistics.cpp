@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "ist/base/ordered_vector.h"
+#include "ist/base/rigid_move.h"
+
 namespace ist::answers {
 namespace {
 
@@ -13,14 +16,15 @@ constexpr double kBinMicrometres = 50;
 std::vector<std::pair<double, double>> weighted(const BiteBody& body, std::span<const double> map,
                                                 const std::optional<Eigen::AlignedBox3d>& region) {
   std::vector<double> areas(map.size());
+  const RigidMove to_fixed(body.to_fixed);
   for (const Triangle& triangle : body.mesh->triangles) {
     const auto corner = [&](std::size_t i) -> Eigen::Vector3d {
-      return body.to_fixed * body.mesh->vertices[triangle[i]];
+      return to_fixed(body.mesh->vertices[triangle[i]]);
     };
     if (std::isnan(map[triangle[0]] + map[triangle[1]] + map[triangle[2]])) continue;
     const Eigen::Vector3d a = corner(0), b = corner(1), c = corner(2);
     if (region && !region->contains((a + b + c) / 3)) continue;
-    const double third = (b - a).cross(c - a).norm() / 6;
+    const double third = length_in_order(cross_in_order(b - a, c - a)) / 6;
     for (const std::uint32_t v : triangle) areas[v] += third;
   }
   std::vector<std::pair<double, double>> numbers;
