@@ -234,7 +234,7 @@ MUTANTS = [
     ("near-pairs-without-pad", "the distance that counts as near lacks the allowance for rounding in float", [("near_visitor.h",
      "Reach reaches{rounded_up(decision_.enough()),", "Reach reaches{0.999F * rounded_up(decision_.enough()),")], ["triangles_test NearPairs.*"]),
     ("no-voxels-and-done", "leaf pairs of trees without voxels have the status of an answer", [("query.cpp", LEAF_PAIRS,
-     LEAF_PAIRS.replace("QueryStatus::kNoVoxels", "QueryStatus::kDone"))], ["query_test Misuse.OfVoxelsThatAreNotThere*"]),
+     LEAF_PAIRS.replace("QueryStatus::kNoVoxels", "QueryStatus::kDone"))], ["search_test Misuse.OfVoxelsThatAreNotThere*"]),
     ("rest-not-measured", "a distance that a budget ended forgets the nodes that it did not test", [("triangle_search.cpp",
      "if (!complete) lower = std::min(lower, search_.nearest_left());", "")], ["triangles_test TriangleBudget*"]),
     ("helped-pair-lost", "the last pair of each of the worker's chunks is lost", [("shared_pairs.cpp", "k < part.count; ++k",
