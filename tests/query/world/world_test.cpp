@@ -408,9 +408,11 @@ TEST(World, AnswersAsEachPairsOwnQueryAlongAMotion) {
   std::vector<LeafPair> out(1 << 18), of_one(1 << 18);
   int kept = 0;
   for (int tick = 0; tick < samples(40) && !::testing::Test::HasFailure(); ++tick) {
+    // A body is away for a few ticks, so other pairs get the pair caches of its pairs.
+    const auto away = static_cast<BodyIndex>(tick / 4) % (2 * count);
     for (BodyIndex body = 0; body < count; ++body) {
       bodies[body].pose.translation() += random.point(-0.005, 0.005);
-      world.set_pose(body, bodies[body].pose);
+      world.set_pose(body, body == away ? shift({100, 0, 0}) : bodies[body].pose);
     }
     for (const WorldPair& pair : world.ask(kIntersects).pairs) {
       Query& query = queries.at(pair.bodies);
@@ -421,8 +423,8 @@ TEST(World, AnswersAsEachPairsOwnQueryAlongAMotion) {
       const DistanceResult own =
           queries.at(pair.bodies).distance(*world.pose_of(pair.bodies.a, pair.bodies.b), 1e-3);
       EXPECT_EQ(pair.complete, own.complete);
-      EXPECT_LE(pair.distance.lower, own.distance.upper);
-      EXPECT_LE(own.distance.lower, pair.distance.upper);
+      EXPECT_EQ(pair.distance.lower, own.distance.lower);
+      EXPECT_EQ(pair.distance.upper, own.distance.upper);
     }
     for (const WorldPair& pair : world.ask(leaf_pairs_in(out)).pairs) {
       const QueryResult own =
@@ -435,6 +437,22 @@ TEST(World, AnswersAsEachPairsOwnQueryAlongAMotion) {
     }
   }
   EXPECT_GT(kept, least(20, 0));
+}
+
+// A plate has the depth and the voxel size of a ball, and fewer nodes.
+TEST(World, HasRoomForTheTreeWithTheMostNodes) {
+  const SphereTree plate = triangle_tree(box({-1, -1, -0.01}, {1, 1, 0.01}), 32), ball = triangle_tree(icosphere(3, 1), 32);
+  ASSERT_EQ(plate.depth(), ball.depth());
+  ASSERT_EQ(plate.voxel_size(), ball.voxel_size());
+  World world;
+  world.add(plate, shift({0, 0, 5}));
+  world.add(ball, shift({0, 0, 0}));
+  world.add(ball, shift({0.2, 0.1, 0}));
+  world.reserve();
+  std::vector<LeafPair> out(1 << 20), own(1 << 20);
+  const WorldAnswer answer = world.ask(leaf_pairs_in(out));
+  ASSERT_EQ(answer.pairs.size(), 1u);
+  EXPECT_EQ(answer.pairs[0].written, Query(ball, ball).leaf_pairs(shift({0.2, 0.1, 0}), own).leaf_pairs);
 }
 
 // The memory grows with the pairs that are near at a time, and not with all pairs.

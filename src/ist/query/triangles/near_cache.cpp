@@ -16,14 +16,14 @@ namespace {
 constexpr double kFewestTicks = 4, kFewestAtOnce = 3;
 // A list that answers in so many ticks is wide enough.
 constexpr double kWantedTicks = 14;
-// A list is filled in so many ticks, if the last list lasts as long.
-constexpr double kFewestSlices = 2, kMostSlices = 32;
+// A list is filled in this part of the ticks in which it answers, if the last list lasts as long.
+constexpr double kFilledIn = 0.6, kFewestSlices = 2, kMostSlices = 32;
 // The fewest tests of a slice, 8 µs.
 constexpr std::uint64_t kLeastSlice = 2'000;
 // A list of fewer pairs could be wider, and one of more should be narrower.
-constexpr std::uint64_t kFewPairs = 96, kManyPairs = 384;
-// The most slack: in margins, or in ticks of the speed.
-constexpr double kMostMargins = 1.5, kMostTicks = 3;
+constexpr std::uint64_t kFewPairs = 96, kManyPairs = 640;
+// The most slack, in margins: a wider list costs more than it saves.
+constexpr double kMostMargins = 1.5;
 constexpr double kNarrowest = 0.3, kWidest = 16;
 // The part of its slack by which the centre of a list that is filled at once lies ahead.
 constexpr double kAhead = 0.5;
@@ -122,7 +122,7 @@ bool NearCache::answer(NearDecision& decision, std::uint64_t& measured) noexcept
 
 double NearCache::slack_of(const Need& need) const noexcept {
   const double wanted = width_ * std::max(kWantedTicks / 2 * speed_, need.enough / 8);
-  return std::min(wanted, std::max(kMostMargins * need.enough, kMostTicks * speed_));
+  return std::min(wanted, kMostMargins * need.enough);
 }
 
 // Begins a list whose centre lies so many ticks ahead.
@@ -163,23 +163,37 @@ bool NearCache::want(const Need& need, std::uint64_t tests) noexcept {
   const double slack = slack_of(need);
   if (!(need.enough + slack < kLargestReach)) return false;
   const double ticks = speed_ > 0 ? 2 * slack / speed_ : HUGE_VAL;
-  const bool holds_now = kept().state == State::kKept;
-  const double spare = holds_now ? kept().reach - need.enough - way(kept().centre, poses_[0]) : 0;
-  const double left = !holds_now ? kFewestSlices : speed_ > 0 ? spare / speed_ - 1 : HUGE_VAL;
-  const double slices = std::clamp(std::min(ticks / 3, left), kFewestSlices, kMostSlices);
   if (next().state != State::kEmpty) {
     // It is dropped if the body does not come to it.
-    const double until = next().state == State::kReady ? 2 : slices;
+    const double until = next().state == State::kReady ? 2 : slices_;
     if (holds(next(), ahead(until), need) || holds(next(), poses_[0], need)) return false;
     next().state = State::kEmpty;
   }
-  const bool lasts =
-      holds_now && holds(kept(), ahead(slices + 2), need, slices * (speed_ - drift_));
-  if (lasts || pause_ > 0 || ticks < kFewestTicks || ticks_ < 3) return false;
-  begin(need, slack, slices + (drift_ > 0 ? std::min(0.8 * slack / drift_, kWantedTicks) : 0));
+  if (pause_ > 0 || ticks < kFewestTicks || ticks_ < 3) return false;
+  const double most = std::floor(std::clamp(kFilledIn * ticks, kFewestSlices, kMostSlices));
+  const double left = ticks_left(need, most + 2);
+  if (left >= most + 2) return false;
+  slices_ = std::clamp(left - 1, kFewestSlices, most);
+  begin(need, slack, slices_ + (drift_ > 0 ? std::min(0.8 * slack / drift_, kWantedTicks) : 0));
   slice_ = std::max(kLeastSlice,
-                    static_cast<std::uint64_t>(1.25 * static_cast<double>(list_tests_) / slices));
+                    static_cast<std::uint64_t>(1.25 * static_cast<double>(list_tests_) / slices_));
   return true;
+}
+
+// Returns in how many ticks, a whole number up to `most`, the kept list still holds all near pairs
+// if the body goes on as before.
+double NearCache::ticks_left(const Need& need, double most) const noexcept {
+  const auto lasts = [&](double ticks) {
+    return holds(lists_[kept_], ahead(ticks), need, ticks * (speed_ - drift_));
+  };
+  if (lists_[kept_].state != State::kKept) return 0;
+  if (lasts(most)) return most;
+  double least = 0;
+  while (most - least > 1) {
+    const double middle = std::floor(0.5 * (least + most));
+    (lasts(middle) ? least : most) = middle;
+  }
+  return least;
 }
 
 void NearCache::advance(std::uint64_t most, const Budget& budget, FoundMemory& memory) noexcept {

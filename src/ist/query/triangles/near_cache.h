@@ -114,6 +114,7 @@ class NearCache {
                            double spare = 0) const noexcept;
   [[nodiscard]] RelativePose ahead(double ticks) const noexcept;
   [[nodiscard]] bool want(const Need& need, std::uint64_t tests) noexcept;
+  [[nodiscard]] double ticks_left(const Need& need, double most) const noexcept;
   [[nodiscard]] double slack_of(const Need& need) const noexcept;
   void begin(const Need& need, double slack, double ticks) noexcept;
   [[nodiscard]] bool begin_here(const Need& need) noexcept;
@@ -137,6 +138,7 @@ class NearCache {
   double motion_ = 0, error_ = 0;  // since the centre of the list that find() found
   double width_ = 1;              // of the next list: a factor of the slack that the speed asks for
   std::uint64_t list_tests_ = 0;  // of the last list
+  double slices_ = 0;             // of the next list, each of slice_ tests
   std::uint64_t slice_ = 0, pause_ = 0;
 };
 
