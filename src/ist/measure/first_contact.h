@@ -33,6 +33,15 @@ class IST_API Motion {
   /// `points` in moving coordinates. Cost: 5 ns a point.
   [[nodiscard]] double longest_way(std::span<const Eigen::Vector3d> points) const noexcept;
 
+  /// Returns the velocity of a point of the moving body that is at `point`, fixed coordinates, mesh
+  /// units for the whole motion. It depends on the place alone, not on the parameter.
+  [[nodiscard]] Eigen::Vector3d velocity(const Eigen::Vector3d& point) const noexcept;
+
+  /// Returns the vector along the axis whose length is the angle of the whole motion, rad.
+  [[nodiscard]] Eigen::Vector3d turning() const noexcept {
+    return {angle_ * axis_[0], angle_ * axis_[1], angle_ * axis_[2]};
+  }
+
   /// How far the rotations of the given poses were from orthonormal: the larger rotation_error().
   [[nodiscard]] double rotation_error() const noexcept { return rotation_error_; }
 
@@ -69,6 +78,9 @@ struct FirstContact {
   double lower = 0,     ///< the parameter before which no triangles intersect
       upper = 1;        ///< the latest parameter of the contact
   bool grazed = false;  ///< the surfaces grazed before, and may have met unseen
+  /// With kContact: the triangles pass through each other between `lower` and `upper`. They
+  /// certainly meet there, but not at `upper`, nor at any other pose that was tried.
+  bool passes = false;
   /// Triangles that intersect at `upper`.
   std::optional<TrianglePair> triangles = std::nullopt;
   /// The closest points at the last pose before the contact that is known to be free, fixed

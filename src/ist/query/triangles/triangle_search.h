@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "ist/query/relative_pose.h"
 #include "ist/query/triangles/cluster_search.h"
@@ -11,6 +12,7 @@
 #include "ist/query/triangles/near_visitor.h"
 #include "ist/query/triangles/pair_list.h"
 #include "ist/query/triangles/shared_pairs.h"
+#include "ist/query/triangles/sweep.h"
 #include "ist/query/triangles/triangle_visitors.h"
 #include "ist/tree/sphere_tree.h"
 #include "simd/dispatch.h"
@@ -110,6 +112,11 @@ class TriangleSearch {
   [[nodiscard]] double distance_error(double margin) const noexcept {
     return kTriangleDistanceError * (longest_edge_ + margin);
   }
+
+  /// Lists all pairs of triangles that may meet on a part of a motion: swept_pairs(). Returns false
+  /// if there are more than `most`, or if the deadline came before the end.
+  bool swept(const RelativePose& middle, const ScrewPart& part, const Budget& budget,
+             std::size_t most, std::vector<TriangleIds>& out) noexcept;
 
   void forget() noexcept {
     witnesses_ = {};
