@@ -16,7 +16,7 @@
 #include "ist/measure/pair_advance.h"
 #include "ist/measure/point_search.h"
 #include "ist/measure/require.h"
-#include "ist/query/swept_clusters.h"
+#include "ist/query/swept_pairs.h"
 #include "ist/query/triangles/triangle_distance.h"
 #include "ist/query/triangles/triangle_visitors.h"
 #include "ist/tree/tree_parts.h"
@@ -34,7 +34,7 @@ constexpr double kStuck = 1.0 / 16;
 constexpr double kSlowSteps = 64;
 // The direction of a distance is known if the distance is so many times the rounding.
 constexpr double kSharp = 64;
-// A list of more pairs of clusters costs more than two lists of half the way.
+// A list of more pairs costs more than two lists of half the way.
 constexpr std::size_t kFewPairs = 512;
 // A list may be longer if the way was halved so often.
 constexpr int kMostHalves = 4;
@@ -67,52 +67,6 @@ bool is_inside_other(const Query& query, const Pose& pose) {
   return holds(fixed, moving, pose) || holds(moving, fixed, inverse_of(pose));
 }
 
-// The box round a triangle, and the velocities of its corners along each axis.
-struct BoxOnTheWay {
-  std::uint32_t id;
-  double low[3], high[3], least[3], most[3], bend;
-
-  BoxOnTheWay() noexcept {
-    for (std::size_t i = 0; i < 3; ++i) {
-      low[i] = HUGE_VAL;
-      high[i] = -HUGE_VAL;
-    }
-  }
-  void set(const TriangleCorners& t) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto axis = static_cast<Eigen::Index>(i);
-      std::tie(low[i], high[i]) = std::minmax({t[0][axis], t[1][axis], t[2][axis]});
-    }
-  }
-  void set(const TriangleCorners& t, const ScrewPart& part) {
-    set(t);
-    const TriangleCorners v = {part.velocity(t[0]), part.velocity(t[1]), part.velocity(t[2])};
-    double square = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto axis = static_cast<Eigen::Index>(i);
-      std::tie(least[i], most[i]) = std::minmax({v[0][axis], v[1][axis], v[2][axis]});
-      square = std::max(square, square_in_order(v[i]));
-    }
-    bend = part.bend(std::sqrt(square));
-  }
-  void hold(const BoxOnTheWay& other) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], other.low[i]);
-      high[i] = std::max(high[i], other.high[i]);
-    }
-  }
-  // Returns the time before which the box, which moves, does not meet one that does not move.
-  [[nodiscard]] double time_to(const BoxOnTheWay& fixed, double pad) const {
-    double time = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double above = (low[i] - fixed.high[i]) - pad, below = (fixed.low[i] - high[i]) - pad;
-      if (above > 0) time = std::max(time, free_time(above, -least[i], bend));
-      if (below > 0) time = std::max(time, free_time(below, most[i], bend));
-    }
-    return time;
-  }
-};
-
 // A search along one motion. It lists the pairs of triangles that may meet on a part of the way.
 // Each pair has a parameter before which it does not meet. The pair with the least one goes on.
 class Advance {
@@ -143,9 +97,11 @@ class Advance {
     found_.fixed_self_intersecting = query_.fixed().self_intersections() > 0;
     found_.moving_self_intersecting = query_.moving().self_intersections() > 0;
     if (is_inside_other(query_, motion_.at(0))) return end(ContactStatus::kInsideAtStart, 0, 0);
-    for (double at = 0; at < 1;) {
-      const std::optional<double> until = list_pairs(at);
-      if (!until || advance(*until)) return found_;
+    double at = 0, length = 1;
+    while (at < 1) {
+      const std::optional<double> until = list_pairs(at, length);
+      if (!until || advance(at, *until)) return found_;
+      length = 2 * (*until - at);
       at = *until;
     }
     return found_.grazed ? end(ContactStatus::kGrazing, graze_.first, graze_.second)
@@ -153,16 +109,15 @@ class Advance {
   }
 
  private:
-  // Two triangles, or two clusters of triangles, that do not meet before a parameter.
+  // A pair that does not meet before a parameter.
   struct Waiting {
     double from;
     TriangleIds ids;
-    bool are_clusters;
-    Eigen::Vector3d axis = {0, 0, 0};  // parts the triangles, as far as it is known
+    Eigen::Vector3d axis;  // parts the triangles, as far as it is known
 
     // The least parameter is on top of a heap.
     [[nodiscard]] static bool later(const Waiting& a, const Waiting& b) noexcept {
-      return std::tie(a.from, b.are_clusters, a.ids) > std::tie(b.from, a.are_clusters, b.ids);
+      return std::tie(a.from, a.ids) > std::tie(b.from, b.ids);
     }
   };
   // The moving body at a parameter.
@@ -213,19 +168,17 @@ class Advance {
     return by < way_ * (1 - at) ? at + by / way_ : 1;
   }
 
-  // Lists the clusters that may meet from a parameter on, for a part of the motion. Returns the end
-  // of the part; nothing if the search has ended.
-  std::optional<double> list_pairs(double at) {
+  // Lists the pairs that may meet from a parameter on, for a part of the motion no longer than
+  // `length`. Returns the end of the part; nothing if the search has ended.
+  std::optional<double> list_pairs(double at, double length) {
     std::size_t most = kFewPairs;
-    double until = at < crowded_ ? at + 0.5 * (crowded_ - at) : 1;
     for (int halves = 0;; ++halves) {
       if (!goes_on(at)) return std::nullopt;
-      const double middle = at + 0.5 * (until - at);
+      const double until = at + length < 1 ? at + length : 1, middle = at + 0.5 * (until - at);
       part_.middle = *project_to_rigid(motion_.at(middle));
       part_.half = std::max(until - middle, middle - at);
       ++found_.distances;
-      const SweptClustersResult listed =
-          swept_clusters(query_, part_, most, options_.budget, clusters_);
+      const SweptPairsResult listed = swept_pairs(query_, part_, most, options_.budget, ids_);
       if (listed.status == QueryStatus::kBusy) {
         end(ContactStatus::kBusy, 0, 1);
         return std::nullopt;
@@ -234,71 +187,36 @@ class Advance {
         end(ContactStatus::kStopped, grazed_at(at), 1);
         return std::nullopt;
       }
-      if (listed.fits) {
-        waiting_.clear();
-        for (const SweptPair& pair : clusters_) {
-          waiting_.push_back({std::max(at, middle + pair.after), {pair.fixed, pair.moving}, true});
-        }
-        return until;
-      }
-      crowded_ = until;
-      until = middle;
+      if (listed.fits) return until;
+      length = 0.5 * (until - at);
       if (halves >= kMostHalves) most *= 2;
     }
   }
 
-  // Lets the pairs that wait go on, always the one with the least parameter. Returns whether the
+  // Lets the pairs of the list go on, always the one with the least parameter. Returns whether the
   // search has ended.
-  bool advance(double until) {
+  bool advance(double at, double until) {
+    waiting_.clear();
+    const Moment first(*this, at);
+    for (const TriangleIds ids : ids_) {
+      const TriangleCorners fixed = fixed_corners(ids.fixed), moving = first.moving[ids.moving];
+      const double from = at + MovingPair(fixed, moving, part_).quick_free_time();
+      if (from < until) waiting_.push_back({from, ids, {0, 0, 0}});
+    }
     std::make_heap(waiting_.begin(), waiting_.end(), Waiting::later);
     while (!waiting_.empty()) {
       std::pop_heap(waiting_.begin(), waiting_.end(), Waiting::later);
-      Waiting next = waiting_.back();
-      waiting_.pop_back();
-      if (next.from >= until) continue;
+      Waiting& next = waiting_.back();
       if (!goes_on(next.from)) return true;
       ++found_.distances;
-      if (next.are_clusters) {
-        split(next, until);
-        continue;
-      }
       if (go_on(next, until)) return true;
-      if (next.from < until) wait(next);
+      if (next.from < until) {
+        std::push_heap(waiting_.begin(), waiting_.end(), Waiting::later);
+      } else {
+        waiting_.pop_back();
+      }
     }
     return false;
-  }
-  void wait(const Waiting& pair) {
-    waiting_.push_back(pair);
-    std::push_heap(waiting_.begin(), waiting_.end(), Waiting::later);
-  }
-  // Lists the pairs of triangles of two clusters that may meet before a parameter.
-  void split(const Waiting& pair, double until) {
-    const double at = pair.from, most = until - at;
-    const Moment now(*this, at);
-    std::array<BoxOnTheWay, kClusterWidth> fixed, moving;
-    const std::size_t fixed_count = members(query_.fixed(), pair.ids.fixed, fixed);
-    const std::size_t moving_count = members(query_.moving(), pair.ids.moving, moving);
-    BoxOnTheWay all;
-    for (std::size_t k = 0; k < fixed_count; ++k) {
-      fixed[k].set(fixed_corners(fixed[k].id));
-      all.hold(fixed[k]);
-    }
-    for (std::size_t m = 0; m < moving_count; ++m) {
-      moving[m].set(now.moving[moving[m].id], part_);
-      if (!(moving[m].time_to(all, rounding_) < most)) continue;
-      for (std::size_t k = 0; k < fixed_count; ++k) {
-        const double time = moving[m].time_to(fixed[k], rounding_);
-        if (time < most) wait({at + time, {fixed[k].id, moving[m].id}, false});
-      }
-    }
-  }
-  // Sets the triangles of a cluster. Returns their number.
-  static std::size_t members(const SphereTree& tree, std::uint32_t cluster,
-                             std::array<BoxOnTheWay, kClusterWidth>& out) {
-    const TriangleClusters& clusters = parts_of(tree).triangles->clusters;
-    const std::uint32_t count = clusters.child_count(-1, cluster);
-    for (std::size_t k = 0; k < count; ++k) out[k].id = clusters.clusters()[cluster].id[k];
-    return count;
   }
   // Lets one pair go on until it may meet. Returns whether it does meet, which ends the search.
   bool go_on(Waiting& pair, double until) {
@@ -363,10 +281,9 @@ class Advance {
   double rounding_ = 0, tolerance_ = 0;
   ScrewPart part_;  // the last one that was listed
   FirstContact found_;
-  std::vector<SweptPair> clusters_;  // that may meet on it
-  std::vector<Waiting> waiting_;     // a heap
-  double crowded_ = 0;               // the end of a part whose list was too long
-  double asked_ = -1;                // the last parameter that the caller was told
+  std::vector<TriangleIds> ids_;  // of the pairs that may meet on it
+  std::vector<Waiting> waiting_;  // a heap
+  double asked_ = -1;             // the last parameter that the caller was told
   std::pair<double, double> graze_{0, 0};
 };
 

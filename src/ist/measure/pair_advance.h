@@ -1,21 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
 
 #include "ist/mesh/triangles_meet.h"
 #include "ist/query/triangles/sweep.h"
 
 namespace ist {
-
-/// Returns the time in which two points that close at a speed, and at most at 2 bend more for each
-/// unit of time, certainly do not go a gap: little less than the root of gap = closing t + bend t².
-[[nodiscard]] inline double free_time(double gap, double closing, double bend) noexcept {
-  constexpr double kShorten = 1 - 0x1p-40;  // by more than rounding
-  if (bend == 0) return closing > 0 ? kShorten * gap / closing : HUGE_VAL;
-  const double root = std::sqrt(closing * closing + 4 * bend * gap);
-  return kShorten * (closing > 0 ? 2 * gap / (closing + root) : (root - closing) / (2 * bend));
-}
 
 /// A fixed triangle, and a moving one at a pose of a screw motion. Lengths are in mesh units, times
 /// are units of the motion's parameter. A triangle may be a segment or a point.
@@ -38,6 +28,9 @@ class MovingPair {
   /// Cost: 0.1 to 1 µs. Source: X. Zhang, M. Lee, Y. J. Kim, Interactive continuous collision
   /// detection for non-convex polyhedra, The Visual Computer 22, 2006.
   [[nodiscard]] Free free_time(double enough) const noexcept;
+
+  /// Returns the longest free time that the axes of coordinates give. Cost: 50 ns.
+  [[nodiscard]] double quick_free_time() const noexcept;
 
   /// Returns whether the triangles certainly pass through each other until a later pose: a corner
   /// goes to the other side of a face above which it stays, or an edge to the other side of an edge

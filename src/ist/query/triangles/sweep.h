@@ -1,11 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
 
-#include "ist/base/float_rounding.h"
 #include "ist/mesh/clusters/triangle_clusters.h"
 #include "simd/triangles/cluster_step.h"
 
@@ -22,7 +18,8 @@ struct ScrewPart {
 
   /// Returns the velocity of a point.
   [[nodiscard]] Eigen::Vector3d velocity(const Eigen::Vector3d& at) const noexcept;
-  /// Returns half of the most acceleration of a point that is no faster than `fastest`.
+  /// Returns the most by which a point leaves its straight way before the end of the part, if no
+  /// point is faster than `fastest`: half of its acceleration times the square of the time.
   [[nodiscard]] double bend(double fastest) const noexcept;
 };
 
@@ -37,59 +34,9 @@ class Sweep {
   /// Cost: 0.2 µs.
   void widen(TurnedBlock& lanes) const noexcept;
 
-  /// Returns the time after the middle of the part before which what is in a lane does not meet
-  /// what is in a fixed node. `lanes` are widened. Cost: 30 ns.
-  [[nodiscard]] double meets_after(const TurnedBlock& lanes, std::size_t lane,
-                                   const NodeBlock& fixed, std::size_t node) const noexcept;
-
  private:
-  // The velocity of a point in the clusters' frame.
-  struct Velocity {
-    double of[3];
-  };
-  [[nodiscard]] Velocity velocity(const double (&at)[3]) const noexcept;
-
   double turning_[3][3], drift_[3];  // the velocity field in the clusters' frame
-  double half_, turn_, bend_, pad_;
-};
-
-/// Two clusters that may meet on a part of a motion, by their indices.
-struct SweptPair {
-  double after;  ///< the middle of the part: they do not meet before
-  std::uint32_t fixed, moving;
-};
-
-/// Lists all pairs of clusters that may meet on a part of a motion: a visitor of a ClusterSearch
-/// with a sweep.
-class SweptPairs {
- public:
-  static constexpr bool kMostFirst = false, kMeasuresRest = false;
-
-  /// @param step of the search
-  /// @param pad  rounding of a coordinate, mesh units
-  /// @param most more pairs end the search; `out` has room for one more
-  SweptPairs(const ClusterStep& step, const Sweep& sweep, double pad, std::size_t most,
-             std::vector<SweptPair>& out) noexcept
-      : step_(step), sweep_(sweep), pad_(pad), most_(most), out_(out) {}
-
-  [[nodiscard]] float reach() const noexcept { return rounded_up(pad_ + double{step_.pose.error}); }
-  bool visit(const ClusterPairs& clusters) noexcept {
-    const LaneNodes& pairs = clusters.pairs;
-    for (std::size_t k = 0; k < pairs.count && out_.size() <= most_; ++k) {
-      const std::uint32_t lane = pairs.lane(k), node = pairs.node(k);
-      const NodeBlock& block = step_.fixed_nodes.blocks[node / kClusterWidth];
-      out_.push_back({sweep_.meets_after(clusters.lanes, lane, block, node % kClusterWidth), node,
-                      clusters.moving + lane});
-    }
-    return out_.size() <= most_;
-  }
-
- private:
-  const ClusterStep& step_;
-  const Sweep& sweep_;
-  double pad_;
-  std::size_t most_;
-  std::vector<SweptPair>& out_;
+  double half_, turn_, bend_;
 };
 
 }  // namespace ist

@@ -8,6 +8,7 @@
 #include "ist/base/ordered_vector.h"
 #include "ist/mesh/clusters/triangle_clusters.h"
 #include "ist/query/traversal/budget_meter.h"
+#include "ist/query/triangles/swept_visitor.h"
 #include "ist/query/triangles/triangle_distance.h"
 #include "ist/tree/tree_parts.h"
 #include "simd/triangles/cluster_step.h"
@@ -390,12 +391,15 @@ TriangleSearch::Near TriangleSearch::near(const TrianglePose& pose, double enoug
 }
 
 bool TriangleSearch::swept(const RelativePose& middle, const ScrewPart& part, const Budget& budget,
-                           std::size_t most, std::vector<SweptPair>& out) noexcept {
+                           std::size_t most, std::vector<TriangleIds>& out) noexcept {
+  const Meshes meshes{*fixed_->triangles(), {*moving_->triangles(), part.middle}};
   const Sweep sweep(part, *fixed_clusters_);
   search_.begin(cluster_pose({part.middle, middle}), &sweep);
-  SweptPairs pairs(search_.step(), sweep, part.pad, most, out);
+  SweptPairs pairs({search_.step(), kernels_, meshes, memory_, budget}, *moving_->triangles(), part,
+                   distance_error(part.speed * part.half + part.pad), most, out);
   BudgetMeter meter(budget, kRootTests);
-  return search_.run(meter, pairs);
+  const bool complete = search_.run(meter, pairs);
+  return pairs.finish() && complete;
 }
 
 void TriangleSearch::prepare_near(const NearCache::Need& need, std::uint64_t tests,

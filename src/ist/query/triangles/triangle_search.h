@@ -113,10 +113,10 @@ class TriangleSearch {
     return kTriangleDistanceError * (longest_edge_ + margin);
   }
 
-  /// Lists all pairs of clusters that may meet on a part of a motion: swept_clusters(). Returns
-  /// false if there are more than `most`, or if the deadline came before the end.
+  /// Lists all pairs of triangles that may meet on a part of a motion: swept_pairs(). Returns false
+  /// if there are more than `most`, or if the deadline came before the end.
   bool swept(const RelativePose& middle, const ScrewPart& part, const Budget& budget,
-             std::size_t most, std::vector<SweptPair>& out) noexcept;
+             std::size_t most, std::vector<TriangleIds>& out) noexcept;
 
   void forget() noexcept {
     witnesses_ = {};

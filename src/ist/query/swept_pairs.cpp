@@ -1,4 +1,4 @@
-#include "ist/query/swept_clusters.h"
+#include "ist/query/swept_pairs.h"
 
 #include <limits>
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace ist {
 
-SweptClustersResult swept_clusters(Query& query, const ScrewPart& part, std::size_t most,
-                                   const Budget& until, std::vector<SweptPair>& out) {
+SweptPairsResult swept_pairs(Query& query, const ScrewPart& part, std::size_t most,
+                             const Budget& until, std::vector<TriangleIds>& out) {
   const ScopedFloatEnvironment environment;
   detail::QueryState& s = detail::Access::state(query);
   out.clear();

@@ -1,0 +1,131 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "ist/base/float_rounding.h"
+#include "ist/base/ordered_vector.h"
+#include "ist/query/triangles/near_visitor.h"
+#include "ist/query/triangles/sweep.h"
+#include "ist/query/triangles/triangle_distance.h"
+#include "ist/query/triangles/triangle_visitors.h"
+
+namespace ist {
+
+/// Lists all pairs of triangles that may meet on a part of a motion: a visitor of a ClusterSearch
+/// whose nodes are swept. Doubles decide about each pair, so the list has the same pairs on every
+/// instruction set.
+class SweptPairs {
+ public:
+  static constexpr bool kMostFirst = false, kMeasuresRest = false;
+
+  /// @param error of a distance in double, mesh units
+  /// @param most  more pairs end the search; `out` has room for one more
+  SweptPairs(const VisitorContext& context, const TriangleMesh& moving, const ScrewPart& part,
+             double error, std::size_t most, std::vector<TriangleIds>& out) noexcept
+      : context_(context),
+        moving_(moving),
+        part_(part),
+        plain_(plain_move(part.middle)),
+        error_(error),
+        most_(most),
+        out_(out) {}
+
+  [[nodiscard]] bool fits() const noexcept { return out_.size() <= most_; }
+  [[nodiscard]] float reach() const noexcept {
+    return rounded_up(part_.pad + double{context_.step.pose.error});
+  }
+  bool visit(const ClusterPairs& clusters) noexcept {
+    Reach reaches{rounded_up(part_.speed * part_.half + part_.pad + 2 * error_),
+                  std::numeric_limits<float>::infinity()};
+    return in_turns(
+        clusters,
+        [&](const ClusterPairs& rest) {
+          return context_.kernels.near_clusters(context_.step, rest, reaches, context_.batch,
+                                                context_.found);
+        },
+        [&] { return take_found(); });
+  }
+  /// Decides about the pairs that are left. Returns whether all fit.
+  bool finish() noexcept { return decide(); }
+
+ private:
+  // Returns false if there are too many pairs, or if the deadline came before the end.
+  bool take_found() noexcept {
+    FoundTriangles& found = context_.found;
+    for (std::size_t k = 0; k < found.open.count; ++k) {
+      if (context_.is_late(k)) return false;
+      if (add(found.open[k], found.squares[k] > 0) && count_ == TriangleOctet::kSize && !decide()) {
+        return false;
+      }
+    }
+    found.open.count = 0;
+    return true;
+  }
+  // Adds a pair to the octet, if the boxes round the triangles' ways overlap.
+  bool add(TriangleIds ids, bool apart) noexcept {
+    const TriangleCorners a = corners_of(context_.meshes.fixed, ids.fixed);
+    const TriangleCorners b = context_.meshes.moving[ids.moving];
+    double fastest = 0;  // its square
+    Eigen::Vector3d low = b[0], high = b[0];
+    for (const Eigen::Vector3d& corner : b) {
+      const Eigen::Vector3d velocity = part_.velocity(corner);
+      fastest = std::max(fastest, square_in_order(velocity));
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        const double way = std::abs(velocity[i]) * part_.half;
+        low[i] = std::min(low[i], corner[i] - way);
+        high[i] = std::max(high[i], corner[i] + way);
+      }
+    }
+    fastest = std::sqrt(fastest);
+    const double more = part_.bend(fastest) + part_.pad;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const auto [least, greatest] = std::minmax({a[0][i], a[1][i], a[2][i]});
+      if (low[i] > greatest + more || high[i] < least - more) return false;
+    }
+    set_lane(octet_.fixed, count_, context_.meshes.fixed, ids.fixed);
+    set_lane(octet_.moving, count_, moving_, ids.moving);
+    ids_[count_] = ids;
+    apart_[count_] = apart;
+    reach_[count_++] = fastest * part_.half + part_.pad + error_;
+    return true;
+  }
+  // Keeps the pairs of the octet that are near enough in the middle of the part. Returns false if
+  // there are too many.
+  bool decide() noexcept {
+    if (count_ == 0) return fits();
+    for (std::size_t lane = count_; lane < TriangleOctet::kSize; ++lane) {
+      set_lane(octet_.fixed, lane, context_.meshes.fixed, ids_[0].fixed);
+      set_lane(octet_.moving, lane, moving_, ids_[0].moving);
+    }
+    OctetDistances distances;
+    context_.kernels.closest_octet(octet_, plain_, distances);
+    for (std::size_t lane = 0; lane < count_ && fits(); ++lane) {
+      const bool far = std::sqrt(distances.square[lane]) > reach_[lane];
+      // Of triangles that intersect, the octet measured the borders.
+      if (far && (apart_[lane] || !context_.meshes.meet(ids_[lane]))) continue;
+      out_.push_back(ids_[lane]);
+    }
+    count_ = 0;
+    return fits();
+  }
+
+  VisitorContext context_;
+  const TriangleMesh& moving_;
+  const ScrewPart& part_;
+  PlainMove plain_;
+  double error_;
+  std::size_t most_;
+  std::vector<TriangleIds>& out_;
+  TriangleOctet octet_;
+  TriangleIds ids_[TriangleOctet::kSize];
+  bool apart_[TriangleOctet::kSize];
+  double reach_[TriangleOctet::kSize];
+  std::size_t count_ = 0;
+};
+
+}  // namespace ist
