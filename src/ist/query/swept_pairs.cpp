@@ -14,7 +14,7 @@ SweptPairsResult swept_pairs(Query& query, const ScrewPart& part, std::size_t mo
   const ScopedFloatEnvironment environment;
   detail::QueryState& s = detail::Access::state(query);
   out.clear();
-  out.reserve(most + 1);
+  out.reserve(most);
   const detail::Use use(s);
   if (!use) return {.status = QueryStatus::kBusy, .complete = false};
   const double way = part.speed * part.half + 2 * part.pad;
@@ -24,9 +24,8 @@ SweptPairsResult swept_pairs(Query& query, const ScrewPart& part, std::size_t mo
   if (!bodies->roots.overlap) return {};
   if (s.triangles->is_too_far(bodies->relative)) return {.fits = false};
   const Budget in_time{std::numeric_limits<std::uint64_t>::max(), until.deadline};
-  const bool all = s.triangles->swept(bodies->relative, part, in_time, most, out);
-  const bool fits = out.size() <= most;
-  return {.complete = all || !fits, .fits = fits};
+  const TriangleSearch::Swept end = s.triangles->swept(bodies->relative, part, in_time, most, out);
+  return {.complete = end.complete, .fits = end.fits};
 }
 
 }  // namespace ist

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -18,40 +19,64 @@ namespace ist {
 
 /// Lists all pairs of triangles that may meet on a part of a motion: a visitor of a ClusterSearch
 /// whose nodes are swept. Doubles decide about each pair, so the list has the same pairs on every
-/// instruction set.
+/// instruction set. The clusters come first, so that too long a list costs little.
 class SweptPairs {
  public:
   static constexpr bool kMostFirst = false, kMeasuresRest = false;
+  /// More pairs of clusters do not fit.
+  static constexpr std::size_t kMostClusters = 1024;
 
   /// @param error of a distance in double, mesh units
-  /// @param most  more pairs end the search; `out` has room for one more
-  SweptPairs(const VisitorContext& context, const TriangleMesh& moving, const ScrewPart& part,
-             double error, std::size_t most, std::vector<TriangleIds>& out) noexcept
+  /// @param most  more pairs end the search; `out` has room for them
+  SweptPairs(const VisitorContext& context, const TriangleMesh& moving,
+             const TriangleClusters& moving_clusters, const ScrewPart& part, double error,
+             std::size_t most, std::vector<TriangleIds>& out) noexcept
       : context_(context),
         moving_(moving),
+        moving_clusters_(moving_clusters),
         part_(part),
         plain_(plain_move(part.middle)),
         error_(error),
         most_(most),
         out_(out) {}
 
-  [[nodiscard]] bool fits() const noexcept { return out_.size() <= most_; }
+  /// Returns whether all pairs fit.
+  [[nodiscard]] bool fits() const noexcept { return fits_; }
   [[nodiscard]] float reach() const noexcept {
     return rounded_up(part_.pad + double{context_.step.pose.error});
   }
   bool visit(const ClusterPairs& clusters) noexcept {
-    Reach reaches{rounded_up(part_.speed * part_.half + part_.pad + 2 * error_),
-                  std::numeric_limits<float>::infinity()};
-    return in_turns(
-        clusters,
-        [&](const ClusterPairs& rest) {
-          return context_.kernels.near_clusters(context_.step, rest, reaches, context_.batch,
-                                                context_.found);
-        },
-        [&] { return take_found(); });
+    const LaneNodes& pairs = clusters.pairs;
+    fits_ = code_count_ + pairs.count <= kMostClusters;
+    if (!fits_ || pairs.count == 0) return fits_;
+    groups_[group_count_++] = {clusters.moving, code_count_, pairs.count};
+    std::copy_n(pairs.codes, pairs.count, codes_.data() + code_count_);
+    code_count_ += pairs.count;
+    return true;
   }
-  /// Decides about the pairs that are left. Returns whether all fit.
-  bool finish() noexcept { return decide(); }
+  /// Compares the triangles. Returns false if there are too many pairs, or if the deadline came
+  /// before the end.
+  bool finish() noexcept {
+    const Reach reach{rounded_up(part_.speed * part_.half + part_.pad + 2 * error_),
+                      std::numeric_limits<float>::infinity()};
+    TurnedBlock turned;
+    for (std::size_t k = 0; k < group_count_; ++k) {
+      const Group& group = groups_[k];
+      context_.kernels.turn_nodes(moving_clusters_.bounds(0)[group.moving / kClusterWidth],
+                                  context_.step.pose, turned);
+      const ClusterPairs clusters{turned, group.moving, {codes_.data() + group.first, group.count}};
+      const bool goes_on = in_turns(
+          clusters,
+          [&](const ClusterPairs& rest) {
+            Reach same = reach;
+            return context_.kernels.near_clusters(context_.step, rest, same, context_.batch,
+                                                  context_.found);
+          },
+          [&] { return take_found(); });
+      if (!goes_on) return false;
+    }
+    return decide();
+  }
 
  private:
   // Returns false if there are too many pairs, or if the deadline came before the end.
@@ -97,25 +122,34 @@ class SweptPairs {
   // Keeps the pairs of the octet that are near enough in the middle of the part. Returns false if
   // there are too many.
   bool decide() noexcept {
-    if (count_ == 0) return fits();
+    if (count_ == 0) return true;
     for (std::size_t lane = count_; lane < TriangleOctet::kSize; ++lane) {
       set_lane(octet_.fixed, lane, context_.meshes.fixed, ids_[0].fixed);
       set_lane(octet_.moving, lane, moving_, ids_[0].moving);
     }
     OctetDistances distances;
     context_.kernels.closest_octet(octet_, plain_, distances);
-    for (std::size_t lane = 0; lane < count_ && fits(); ++lane) {
+    for (std::size_t lane = 0; lane < count_; ++lane) {
       const bool far = std::sqrt(distances.square[lane]) > reach_[lane];
       // Of triangles that intersect, the octet measured the borders.
       if (far && (apart_[lane] || !context_.meshes.meet(ids_[lane]))) continue;
+      fits_ = out_.size() < most_;
+      if (!fits_) return false;
       out_.push_back(ids_[lane]);
     }
     count_ = 0;
-    return fits();
+    return true;
   }
+
+  // Pairs of clusters, of one block of moving ones.
+  struct Group {
+    std::uint32_t moving;  // the first of the block
+    std::size_t first, count;
+  };
 
   VisitorContext context_;
   const TriangleMesh& moving_;
+  const TriangleClusters& moving_clusters_;
   const ScrewPart& part_;
   PlainMove plain_;
   double error_;
@@ -126,6 +160,11 @@ class SweptPairs {
   bool apart_[TriangleOctet::kSize];
   double reach_[TriangleOctet::kSize];
   std::size_t count_ = 0;
+  bool fits_ = true;
+  // A kernel may read a vector behind the last code.
+  std::array<std::uint32_t, kMostClusters + kClusterWidth> codes_;
+  std::array<Group, kMostClusters> groups_;
+  std::size_t code_count_ = 0, group_count_ = 0;
 };
 
 }  // namespace ist

@@ -390,16 +390,19 @@ TriangleSearch::Near TriangleSearch::near(const TrianglePose& pose, double enoug
   return {{complete, tests}, false};
 }
 
-bool TriangleSearch::swept(const RelativePose& middle, const ScrewPart& part, const Budget& budget,
-                           std::size_t most, std::vector<TriangleIds>& out) noexcept {
+TriangleSearch::Swept TriangleSearch::swept(const RelativePose& middle, const ScrewPart& part,
+                                            const Budget& budget, std::size_t most,
+                                            std::vector<TriangleIds>& out) noexcept {
   const Meshes meshes{*fixed_->triangles(), {*moving_->triangles(), part.middle}};
   const Sweep sweep(part, *fixed_clusters_);
   search_.begin(cluster_pose({part.middle, middle}), &sweep);
-  SweptPairs pairs({search_.step(), kernels_, meshes, memory_, budget}, *moving_->triangles(), part,
-                   distance_error(part.speed * part.half + part.pad), most, out);
+  SweptPairs pairs({search_.step(), kernels_, meshes, memory_, budget}, *moving_->triangles(),
+                   *moving_clusters_, part, distance_error(part.speed * part.half + part.pad), most,
+                   out);
   BudgetMeter meter(budget, kRootTests);
   const bool complete = search_.run(meter, pairs);
-  return pairs.finish() && complete;
+  const bool in_time = complete && pairs.finish();
+  return {in_time || !pairs.fits(), pairs.fits()};
 }
 
 void TriangleSearch::prepare_near(const NearCache::Need& need, std::uint64_t tests,

@@ -113,10 +113,13 @@ class TriangleSearch {
     return kTriangleDistanceError * (longest_edge_ + margin);
   }
 
-  /// Lists all pairs of triangles that may meet on a part of a motion: swept_pairs(). Returns false
-  /// if there are more than `most`, or if the deadline came before the end.
-  bool swept(const RelativePose& middle, const ScrewPart& part, const Budget& budget,
-             std::size_t most, std::vector<TriangleIds>& out) noexcept;
+  struct Swept {
+    bool complete;  ///< the deadline did not end the search
+    bool fits;      ///< there are not too many pairs
+  };
+  /// Lists all pairs of triangles that may meet on a part of a motion: swept_pairs().
+  Swept swept(const RelativePose& middle, const ScrewPart& part, const Budget& budget,
+              std::size_t most, std::vector<TriangleIds>& out) noexcept;
 
   void forget() noexcept {
     witnesses_ = {};
