@@ -35,9 +35,7 @@ constexpr double kSlowSteps = 64;
 // The direction of a distance is known if the distance is so many times the rounding.
 constexpr double kSharp = 64;
 // A list of more pairs costs more than two lists of half the way.
-constexpr std::size_t kFewPairs = 512;
-// A part is at most so many times shorter than the one before if a contact is known to come.
-constexpr double kMostShorter = 16;
+constexpr std::size_t kFewPairs = 256;
 // A list may be longer if the way was halved so often.
 constexpr int kMostHalves = 4;
 
@@ -103,7 +101,9 @@ class Advance {
     for (double at = 0, length = 1; at < 1;) {
       const std::optional<double> until = list_pairs(at, length);
       if (!until || advance(at, *until)) return found_;
-      length = ids_.size() < kFewPairs / 4 ? 2 * (*until - at) : *until - at;
+      // The bodies come nearer to each other towards a contact.
+      length = *until - at;
+      length *= contact_ <= 1 ? 0.5 : ids_.size() < kFewPairs / 4 ? 2 : 1;
       at = *until;
     }
     return found_.grazed ? end(ContactStatus::kGrazing, graze_.first, graze_.second)
@@ -170,18 +170,11 @@ class Advance {
     return by < way_ * (1 - at) ? at + by / way_ : 1;
   }
 
-  // Returns a length of the next part that ends before a contact, or not far behind it, if one is
-  // known: to find that bodies meet takes less time than to list their pairs.
-  double shortened(double at, double length) {
-    if (contact_ > 1) return length;
-    const double least = length / kMostShorter;
-    length = std::min(length, contact_ - at);
-    while (length > least && length * way_ > tolerance_) {
-      length *= 0.5;
-      if (!meet_at(at + length)) break;
-      contact_ = at + length;
-    }
-    return length;
+  // Returns the end of a part, no later than a contact that is known. Looks whether there is one.
+  double end_of(double at, double length) {
+    const double last = std::min(contact_, 1.0), until = at + length < last ? at + length : last;
+    if (until < contact_ && contact_ <= 1 && meet_at(until)) contact_ = until;
+    return until;
   }
   [[nodiscard]] bool meet_at(double at) {
     ++found_.verdicts;
@@ -194,19 +187,14 @@ class Advance {
   // `length`. Returns the end of the part; nothing if the search has ended.
   std::optional<double> list_pairs(double at, double length) {
     std::size_t most = kFewPairs;
-    if (is_busy_) {
-      end(ContactStatus::kBusy, 0, 1);
-      return std::nullopt;
-    }
-    length = shortened(at, length);
     for (int halves = 0;; ++halves) {
       if (!goes_on(at)) return std::nullopt;
-      const double until = at + length < 1 ? at + length : 1, middle = at + 0.5 * (until - at);
+      const double until = end_of(at, length), middle = at + 0.5 * (until - at);
       part_.middle = *project_to_rigid(motion_.at(middle));
       part_.half = std::max(until - middle, middle - at);
       ++found_.distances;
       const SweptPairsResult listed = swept_pairs(query_, part_, most, options_.budget, ids_);
-      if (listed.status == QueryStatus::kBusy) {
+      if (is_busy_ || listed.status == QueryStatus::kBusy) {
         end(ContactStatus::kBusy, 0, 1);
         return std::nullopt;
       }
@@ -227,7 +215,7 @@ class Advance {
     const Moment first(*this, at);
     for (const TriangleIds ids : ids_) {
       const TriangleCorners fixed = fixed_corners(ids.fixed), moving = first.moving[ids.moving];
-      const double from = at + MovingPair(fixed, moving, part_).quick_free_time();
+      const double from = at + MovingPair(fixed, moving, part_).quick_free_time(until - at);
       if (from < until) waiting_.push_back({from, ids, {0, 0, 0}});
     }
     std::make_heap(waiting_.begin(), waiting_.end(), Waiting::later);

@@ -125,9 +125,11 @@ void MovingPair::try_axis(const Vector& axis, Free& best) const noexcept {
   }
 }
 
-double MovingPair::quick_free_time() const noexcept {
+double MovingPair::quick_free_time(double enough) const noexcept {
   Free best;
-  for (Eigen::Index i = 0; i < 3; ++i) try_axis(Vector::Unit(i), best);
+  try_axis(normal_of(fixed_), best);
+  if (best.time < enough) try_axis(normal_of(moving_), best);
+  for (Eigen::Index i = 0; i < 3 && best.time < enough; ++i) try_axis(Vector::Unit(i), best);
   return best.time;
 }
 

@@ -29,8 +29,9 @@ class MovingPair {
   /// detection for non-convex polyhedra, The Visual Computer 22, 2006.
   [[nodiscard]] Free free_time(double enough) const noexcept;
 
-  /// Returns the longest free time that the axes of coordinates give. Cost: 50 ns.
-  [[nodiscard]] double quick_free_time() const noexcept;
+  /// Returns the longest free time that the triangles' normals and the axes of coordinates give.
+  /// Cost: 50 to 200 ns.
+  [[nodiscard]] double quick_free_time(double enough) const noexcept;
 
   /// Returns whether the triangles certainly pass through each other until a later pose: a corner
   /// goes to the other side of a face above which it stays, or an edge to the other side of an edge
