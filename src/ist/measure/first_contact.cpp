@@ -13,10 +13,10 @@
 #include "ist/base/ordered_vector.h"
 #include "ist/base/pose.h"
 #include "ist/base/rigid_move.h"
-#include "ist/measure/pair_advance.h"
 #include "ist/measure/point_search.h"
 #include "ist/measure/require.h"
 #include "ist/query/swept_pairs.h"
+#include "ist/query/triangles/moving_pair.h"
 #include "ist/query/triangles/triangle_distance.h"
 #include "ist/query/triangles/triangle_visitors.h"
 #include "ist/tree/tree_parts.h"
@@ -35,7 +35,7 @@ constexpr double kSlowSteps = 64;
 // The direction of a distance is known if the distance is so many times the rounding.
 constexpr double kSharp = 64;
 // A list of more pairs costs more than two lists of half the way.
-constexpr std::size_t kFewPairs = 256;
+constexpr std::size_t kFewPairs = 1024;
 // A list may be longer if the way was halved so often.
 constexpr int kMostHalves = 4;
 
@@ -85,7 +85,9 @@ class Advance {
     found_.rotation_error = motion.rotation_error();
     found_.narrowest = rounding_ / kStuck;
     tolerance_ = std::max(tolerance, found_.narrowest);
-    part_ = {Pose::Identity(), motion.turning(), motion.velocity({0, 0, 0}), 0, way_, rounding_};
+    part_ = {
+        Pose::Identity(), Pose::Identity(), motion.turning(), motion.velocity({0, 0, 0}), 0, way_,
+        rounding_};
   }
 
   FirstContact run() {
@@ -103,7 +105,7 @@ class Advance {
       if (!until || advance(at, *until)) return found_;
       // The bodies come nearer to each other towards a contact.
       length = *until - at;
-      length *= contact_ <= 1 ? 0.5 : ids_.size() < kFewPairs / 4 ? 2 : 1;
+      length *= contact_ <= 1 ? 0.5 : pairs_.size() < kFewPairs / 4 ? 2 : 1;
       at = *until;
     }
     return found_.grazed ? end(ContactStatus::kGrazing, graze_.first, graze_.second)
@@ -190,10 +192,11 @@ class Advance {
     for (int halves = 0;; ++halves) {
       if (!goes_on(at)) return std::nullopt;
       const double until = end_of(at, length), middle = at + 0.5 * (until - at);
+      part_.start = *project_to_rigid(motion_.at(at));
       part_.middle = *project_to_rigid(motion_.at(middle));
       part_.half = std::max(until - middle, middle - at);
       ++found_.distances;
-      const SweptPairsResult listed = swept_pairs(query_, part_, most, options_.budget, ids_);
+      const SweptPairsResult listed = swept_pairs(query_, part_, most, options_.budget, pairs_);
       if (is_busy_ || listed.status == QueryStatus::kBusy) {
         end(ContactStatus::kBusy, 0, 1);
         return std::nullopt;
@@ -212,11 +215,8 @@ class Advance {
   // search has ended.
   bool advance(double at, double until) {
     waiting_.clear();
-    const Moment first(*this, at);
-    for (const TriangleIds ids : ids_) {
-      const TriangleCorners fixed = fixed_corners(ids.fixed), moving = first.moving[ids.moving];
-      const double from = at + MovingPair(fixed, moving, part_).quick_free_time(until - at);
-      if (from < until) waiting_.push_back({from, ids, {0, 0, 0}});
+    for (const SweptPair& pair : pairs_) {
+      waiting_.push_back({at + shorter(pair.after), pair.ids, {0, 0, 0}});
     }
     std::make_heap(waiting_.begin(), waiting_.end(), Waiting::later);
     while (!waiting_.empty()) {
@@ -233,6 +233,11 @@ class Advance {
     }
     return false;
   }
+  // Returns a time that leaves half of the tolerance, so that the last distance is not all
+  // rounding.
+  [[nodiscard]] double shorter(double time) const {
+    return time * way_ >= tolerance_ ? time - 0.5 * tolerance_ / way_ : time;
+  }
   // Lets one pair go on until it may meet. Returns whether it does meet, which ends the search.
   bool go_on(Waiting& pair, double until) {
     const double at = pair.from;
@@ -246,7 +251,7 @@ class Advance {
     if (pair.from >= until) return false;
     const double way = free.time * way_;
     if (way >= tolerance_) {
-      pair.from -= 0.5 * tolerance_ / way_;  // so that the last distance is more than rounding
+      pair.from = at + shorter(free.time);
       return false;
     }
     const double last = step(at, tolerance_);
@@ -296,7 +301,7 @@ class Advance {
   double rounding_ = 0, tolerance_ = 0;
   ScrewPart part_;  // the last one that was listed
   FirstContact found_;
-  std::vector<TriangleIds> ids_;  // of the pairs that may meet on it
+  std::vector<SweptPair> pairs_;  // that may meet on it
   std::vector<Waiting> waiting_;  // a heap
   double contact_ = HUGE_VAL;     // a parameter at which the bodies meet
   bool is_busy_ = false;          // another thread uses the query

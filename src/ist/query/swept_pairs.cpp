@@ -10,7 +10,7 @@
 namespace ist {
 
 SweptPairsResult swept_pairs(Query& query, const ScrewPart& part, std::size_t most,
-                             const Budget& until, std::vector<TriangleIds>& out) {
+                             const Budget& until, std::vector<SweptPair>& out) {
   const ScopedFloatEnvironment environment;
   detail::QueryState& s = detail::Access::state(query);
   out.clear();

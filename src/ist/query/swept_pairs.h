@@ -29,6 +29,6 @@ struct SweptPairsResult {
 ///
 /// Cost: as Query::intersects(), and 0.2 µs a pair.
 [[nodiscard]] SweptPairsResult swept_pairs(Query& query, const ScrewPart& part, std::size_t most,
-                                           const Budget& until, std::vector<TriangleIds>& out);
+                                           const Budget& until, std::vector<SweptPair>& out);
 
 }  // namespace ist

@@ -10,6 +10,7 @@
 
 #include "ist/base/float_rounding.h"
 #include "ist/base/ordered_vector.h"
+#include "ist/query/triangles/moving_pair.h"
 #include "ist/query/triangles/near_visitor.h"
 #include "ist/query/triangles/sweep.h"
 #include "ist/query/triangles/triangle_distance.h"
@@ -30,11 +31,12 @@ class SweptPairs {
   /// @param most  more pairs end the search; `out` has room for them
   SweptPairs(const VisitorContext& context, const TriangleMesh& moving,
              const TriangleClusters& moving_clusters, const ScrewPart& part, double error,
-             std::size_t most, std::vector<TriangleIds>& out) noexcept
+             std::size_t most, std::vector<SweptPair>& out) noexcept
       : context_(context),
         moving_(moving),
         moving_clusters_(moving_clusters),
         part_(part),
+        at_start_(moving, part.start),
         plain_(plain_move(part.middle)),
         error_(error),
         most_(most),
@@ -91,7 +93,7 @@ class SweptPairs {
     found.open.count = 0;
     return true;
   }
-  // Adds a pair to the octet, if the boxes round the triangles' ways overlap.
+  // Adds a pair to the octet, unless the boxes round their ways or some axes part the triangles.
   bool add(TriangleIds ids, bool apart) noexcept {
     const TriangleCorners a = corners_of(context_.meshes.fixed, ids.fixed);
     const TriangleCorners b = context_.meshes.moving[ids.moving];
@@ -112,9 +114,13 @@ class SweptPairs {
       const auto [least, greatest] = std::minmax({a[0][i], a[1][i], a[2][i]});
       if (low[i] > greatest + more || high[i] < least - more) return false;
     }
+    const double length = 2 * part_.half;
+    const TriangleCorners first = at_start_[ids.moving];
+    const double after = MovingPair(a, first, part_).quick_free_time(length);
+    if (after >= length) return false;
     set_lane(octet_.fixed, count_, context_.meshes.fixed, ids.fixed);
     set_lane(octet_.moving, count_, moving_, ids.moving);
-    ids_[count_] = ids;
+    pairs_[count_] = {after, ids};
     apart_[count_] = apart;
     reach_[count_++] = fastest * part_.half + part_.pad + error_;
     return true;
@@ -124,18 +130,18 @@ class SweptPairs {
   bool decide() noexcept {
     if (count_ == 0) return true;
     for (std::size_t lane = count_; lane < TriangleOctet::kSize; ++lane) {
-      set_lane(octet_.fixed, lane, context_.meshes.fixed, ids_[0].fixed);
-      set_lane(octet_.moving, lane, moving_, ids_[0].moving);
+      set_lane(octet_.fixed, lane, context_.meshes.fixed, pairs_[0].ids.fixed);
+      set_lane(octet_.moving, lane, moving_, pairs_[0].ids.moving);
     }
     OctetDistances distances;
     context_.kernels.closest_octet(octet_, plain_, distances);
     for (std::size_t lane = 0; lane < count_; ++lane) {
       const bool far = std::sqrt(distances.square[lane]) > reach_[lane];
       // Of triangles that intersect, the octet measured the borders.
-      if (far && (apart_[lane] || !context_.meshes.meet(ids_[lane]))) continue;
+      if (far && (apart_[lane] || !context_.meshes.meet(pairs_[lane].ids))) continue;
       fits_ = out_.size() < most_;
       if (!fits_) return false;
-      out_.push_back(ids_[lane]);
+      out_.push_back(pairs_[lane]);
     }
     count_ = 0;
     return true;
@@ -151,12 +157,13 @@ class SweptPairs {
   const TriangleMesh& moving_;
   const TriangleClusters& moving_clusters_;
   const ScrewPart& part_;
+  MovedTriangles at_start_;
   PlainMove plain_;
   double error_;
   std::size_t most_;
-  std::vector<TriangleIds>& out_;
+  std::vector<SweptPair>& out_;
   TriangleOctet octet_;
-  TriangleIds ids_[TriangleOctet::kSize];
+  SweptPair pairs_[TriangleOctet::kSize];
   bool apart_[TriangleOctet::kSize];
   double reach_[TriangleOctet::kSize];
   std::size_t count_ = 0;

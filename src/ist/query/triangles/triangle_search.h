@@ -119,7 +119,7 @@ class TriangleSearch {
   };
   /// Lists all pairs of triangles that may meet on a part of a motion: swept_pairs().
   Swept swept(const RelativePose& middle, const ScrewPart& part, const Budget& budget,
-              std::size_t most, std::vector<TriangleIds>& out) noexcept;
+              std::size_t most, std::vector<SweptPair>& out) noexcept;
 
   void forget() noexcept {
     witnesses_ = {};

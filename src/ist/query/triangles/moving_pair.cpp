@@ -1,4 +1,4 @@
-#include "ist/measure/pair_advance.h"
+#include "ist/query/triangles/moving_pair.h"
 
 #include <algorithm>
 #include <cmath>
@@ -97,7 +97,7 @@ MovingPair::MovingPair(const TriangleCorners& fixed, const TriangleCorners& movi
     : fixed_(fixed), moving_(moving), turning_(length_in_order(part.turning)), pad_(part.pad) {
   for (std::size_t k = 0; k < 3; ++k) {
     velocity_[k] = part.velocity(moving[k]);
-    bend_[k] = 0.5 * turning_ * length_in_order(velocity_[k]);
+    bend_[k] = turning_ > 0 ? 0.5 * turning_ * length_in_order(velocity_[k]) : 0;
   }
 }
 
