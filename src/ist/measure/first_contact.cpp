@@ -172,11 +172,15 @@ class Advance {
     return by < way_ * (1 - at) ? at + by / way_ : 1;
   }
 
-  // Returns the end of a part, no later than a contact that is known. Looks whether there is one.
+  // Returns the end of a part, no later than a contact that is known. Looks for an earlier contact:
+  // to find that bodies meet takes less time than to list their pairs.
   double end_of(double at, double length) {
     const double last = std::min(contact_, 1.0), until = at + length < last ? at + length : last;
-    if (until < contact_ && contact_ <= 1 && meet_at(until)) contact_ = until;
-    return until;
+    if (contact_ > 1 || until == contact_ || !meet_at(until)) return until;
+    contact_ = until;
+    const double half = at + 0.5 * (until - at);
+    if (meet_at(half)) contact_ = half;
+    return contact_;
   }
   [[nodiscard]] bool meet_at(double at) {
     ++found_.verdicts;
