@@ -107,6 +107,7 @@ class Advance {
       length = *until - at;
       length *= contact_ <= 1 ? 0.5 : pairs_.size() < kFewPairs / 4 ? 2 : 1;
       at = *until;
+      if (at >= contact_) contact_ = HUGE_VAL;  // only rounding can let them pass it
     }
     return found_.grazed ? end(ContactStatus::kGrazing, graze_.first, graze_.second)
                          : end(ContactStatus::kNone, 1, 1);
@@ -141,16 +142,19 @@ class Advance {
     return found_;
   }
   FirstContact touches_at_start() {
-    std::array<TrianglePair, 1> first;
-    const Moment start(*this, 0);
-    if (query_.triangle_pairs(start.pose, first).status == QueryStatus::kBusy) {
-      return end(ContactStatus::kBusy, 0, 1);
-    }
-    found_.triangles = first[0];
+    const TrianglePair first = first_at(0);
+    if (is_busy_) return end(ContactStatus::kBusy, 0, 1);
+    found_.triangles = first;
     found_.place =
-        closest_points(fixed_corners(first[0].fixed), start.moving[first[0].moving], first[0]);
+        closest_points(fixed_corners(first.fixed), Moment(*this, 0).moving[first.moving], first);
     found_.distance = {0, 0};
     return end(ContactStatus::kTouchesAtStart, 0, 0);
+  }
+  // Returns the first triangles that intersect at a parameter. Precondition: some do.
+  TrianglePair first_at(double at) {
+    std::array<TrianglePair, 1> first{};
+    is_busy_ = query_.triangle_pairs(motion_.at(at), first).status == QueryStatus::kBusy;
+    return first[0];
   }
   [[nodiscard]] TriangleCorners fixed_corners(std::uint32_t triangle) const {
     return corners_of(*query_.fixed().triangles(), triangle);
@@ -228,7 +232,9 @@ class Advance {
       Waiting& next = waiting_.back();
       if (!goes_on(next.from)) return true;
       ++found_.distances;
-      if (go_on(next, until)) return true;
+      const bool ended = go_on(next, until);
+      if (is_busy_) end(ContactStatus::kBusy, 0, 1);
+      if (ended || is_busy_) return true;
       if (next.from < until) {
         std::push_heap(waiting_.begin(), waiting_.end(), Waiting::later);
       } else {
@@ -259,10 +265,19 @@ class Advance {
       return false;
     }
     const double last = step(at, tolerance_);
-    for (const double then : {last, std::min(last, step(at, 2 * way + rounding_ / kStuck))}) {
+    const double soon = std::min(last, step(at, 2 * way + rounding_ / kStuck));
+    for (const double then : {last, soon}) {
       if (meet(pair.ids, then)) return meets({at, then}, pair, fixed, moving);
     }
     if (way * kSlowSteps >= tolerance_) return false;
+    // Other triangles may meet there, as the sides of a thin plate do.
+    for (const double then : {last, soon}) {
+      if (!meet_at(then)) continue;
+      const TrianglePair triangles = first_at(then);
+      meets({at, then}, pair, fixed, moving);
+      found_.triangles = triangles;
+      return true;
+    }
     const double before = std::max(0.0, at - (last - at));
     const TriangleCorners was = Moment(*this, before).moving[pair.ids.moving],
                           then = Moment(*this, last).moving[pair.ids.moving];
