@@ -36,6 +36,8 @@ constexpr double kSlowSteps = 64;
 constexpr double kSharp = 64;
 // A list of more pairs costs more than two lists of half the way.
 constexpr std::size_t kFewPairs = 1024;
+// So many parts before a contact are shorter than the one before.
+constexpr int kShorterParts = 2;
 // A list may be longer if the way was halved so often.
 constexpr int kMostHalves = 4;
 
@@ -103,9 +105,7 @@ class Advance {
     for (double at = 0, length = 1; at < 1;) {
       const std::optional<double> until = list_pairs(at, length);
       if (!until || advance(at, *until)) return found_;
-      // The bodies come nearer to each other towards a contact.
-      length = *until - at;
-      length *= contact_ <= 1 ? 0.5 : pairs_.size() < kFewPairs / 4 ? 2 : 1;
+      length = (*until - at) * growth();
       at = *until;
       if (at >= contact_) contact_ = HUGE_VAL;  // only rounding can let them pass it
     }
@@ -182,6 +182,7 @@ class Advance {
     const double last = std::min(contact_, 1.0), until = at + length < last ? at + length : last;
     if (contact_ > 1 || until == contact_ || !meet_at(until)) return until;
     contact_ = until;
+    quiet_parts_ = 0;
     const double half = at + 0.5 * (until - at);
     if (meet_at(half)) contact_ = half;
     return contact_;
@@ -191,6 +192,14 @@ class Advance {
     const IntersectionResult asked = query_.intersects(motion_.at(at));
     is_busy_ = is_busy_ || asked.status == QueryStatus::kBusy;
     return asked.answer == Answer::kYes;
+  }
+
+  // Returns the next part's length over the last one's. The bodies come nearer to each other
+  // towards a contact that is known; but it may be far.
+  double growth() {
+    if (contact_ > 1) return listed_.pairs.size() < kFewPairs / 4 ? 2 : 1;
+    ++quiet_parts_;
+    return quiet_parts_ <= kShorterParts ? 0.5 : quiet_parts_ == kShorterParts + 1 ? 1 : 2;
   }
 
   // Lists the pairs that may meet from a parameter on, for a part of the motion no longer than
@@ -204,7 +213,7 @@ class Advance {
       part_.middle = *project_to_rigid(motion_.at(middle));
       part_.half = std::max(until - middle, middle - at);
       ++found_.distances;
-      const SweptPairsResult listed = swept_pairs(query_, part_, most, options_.budget, pairs_);
+      const SweptPairsResult listed = swept_pairs(query_, part_, most, options_.budget, listed_);
       if (is_busy_ || listed.status == QueryStatus::kBusy) {
         end(ContactStatus::kBusy, 0, 1);
         return std::nullopt;
@@ -215,6 +224,7 @@ class Advance {
       }
       if (listed.fits) return until;
       length = 0.5 * (until - at);
+      quiet_parts_ = 0;
       if (halves >= kMostHalves) most *= 2;
     }
   }
@@ -223,7 +233,7 @@ class Advance {
   // search has ended.
   bool advance(double at, double until) {
     waiting_.clear();
-    for (const SweptPair& pair : pairs_) {
+    for (const SweptPair& pair : listed_.pairs) {
       waiting_.push_back({at + shorter(pair.after), pair.ids, {0, 0, 0}});
     }
     std::make_heap(waiting_.begin(), waiting_.end(), Waiting::later);
@@ -320,8 +330,9 @@ class Advance {
   double rounding_ = 0, tolerance_ = 0;
   ScrewPart part_;  // the last one that was listed
   FirstContact found_;
-  std::vector<SweptPair> pairs_;  // that may meet on it
+  SweptList listed_;              // that may meet on it
   std::vector<Waiting> waiting_;  // a heap
+  int quiet_parts_ = 0;           // since a list was too long, or a contact was found
   double contact_ = HUGE_VAL;     // a parameter at which the bodies meet
   bool is_busy_ = false;          // another thread uses the query
   double asked_ = -1;             // the last parameter that the caller was told

@@ -10,10 +10,12 @@
 namespace ist {
 
 SweptPairsResult swept_pairs(Query& query, const ScrewPart& part, std::size_t most,
-                             const Budget& until, std::vector<SweptPair>& out) {
+                             const Budget& until, SweptList& out) {
   const ScopedFloatEnvironment environment;
   detail::QueryState& s = detail::Access::state(query);
-  out.clear();
+  out.pairs.clear();
+  out.codes.clear();
+  out.groups.clear();
   out.reserve(most);
   const detail::Use use(s);
   if (!use) return {.status = QueryStatus::kBusy, .complete = false};

@@ -1,11 +1,10 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 #include "ist/query/query.h"
 #include "ist/query/triangles/sweep.h"
-#include "simd/triangles/cluster_step.h"
+#include "ist/query/triangles/swept_visitor.h"
 
 namespace ist {
 
@@ -23,12 +22,12 @@ struct SweptPairsResult {
 ///
 /// @param query of two trees with triangles
 /// @param part  of the motion of the moving body
-/// @param most  more pairs end the search
+/// @param most  more pairs, of clusters or of triangles, end the search
 /// @param until its deadline ends the search
-/// @param out   takes the pairs
+/// @param out   takes the pairs; its memory grows
 ///
 /// Cost: as Query::intersects(), and 0.2 µs a pair.
 [[nodiscard]] SweptPairsResult swept_pairs(Query& query, const ScrewPart& part, std::size_t most,
-                                           const Budget& until, std::vector<SweptPair>& out);
+                                           const Budget& until, SweptList& out);
 
 }  // namespace ist

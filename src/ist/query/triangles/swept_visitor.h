@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -18,20 +17,38 @@
 
 namespace ist {
 
+/// The findings of SweptPairs.
+struct SweptList {
+  // Pairs of clusters, of one block of moving ones.
+  struct Group {
+    std::uint32_t moving;  // the first of the block
+    std::size_t first, count;
+  };
+  std::vector<SweptPair> pairs;
+  std::vector<std::uint32_t> codes;  ///< of pairs of clusters
+  std::vector<Group> groups;         ///< of codes
+
+  /// Reserves memory for so many pairs of clusters, and of triangles.
+  void reserve(std::size_t most) {
+    pairs.reserve(most);
+    codes.reserve(most + kClusterWidth);  // a kernel may read a vector behind the last code
+    groups.reserve(most);
+  }
+};
+
 /// Lists all pairs of triangles that may meet on a part of a motion: a visitor of a ClusterSearch
 /// whose nodes are swept. Doubles decide about each pair, so the list has the same pairs on every
 /// instruction set. The clusters come first, so that too long a list costs little.
 class SweptPairs {
  public:
   static constexpr bool kMostFirst = false, kMeasuresRest = false;
-  /// More pairs of clusters do not fit.
-  static constexpr std::size_t kMostClusters = 1024;
 
   /// @param error of a distance in double, mesh units
-  /// @param most  more pairs end the search; `out` has room for them
+  /// @param most  more pairs, of clusters or of triangles, end the search; `out` has room for them,
+  /// and is empty
   SweptPairs(const VisitorContext& context, const TriangleMesh& moving,
              const TriangleClusters& moving_clusters, const ScrewPart& part, double error,
-             std::size_t most, std::vector<SweptPair>& out) noexcept
+             std::size_t most, SweptList& out) noexcept
       : context_(context),
         moving_(moving),
         moving_clusters_(moving_clusters),
@@ -49,11 +66,10 @@ class SweptPairs {
   }
   bool visit(const ClusterPairs& clusters) noexcept {
     const LaneNodes& pairs = clusters.pairs;
-    fits_ = code_count_ + pairs.count <= kMostClusters;
+    fits_ = out_.codes.size() + pairs.count <= most_;
     if (!fits_ || pairs.count == 0) return fits_;
-    groups_[group_count_++] = {clusters.moving, code_count_, pairs.count};
-    std::copy_n(pairs.codes, pairs.count, codes_.data() + code_count_);
-    code_count_ += pairs.count;
+    out_.groups.push_back({clusters.moving, out_.codes.size(), pairs.count});
+    out_.codes.insert(out_.codes.end(), pairs.codes, pairs.codes + pairs.count);
     return true;
   }
   /// Compares the triangles. Returns false if there are too many pairs, or if the deadline came
@@ -62,11 +78,11 @@ class SweptPairs {
     const Reach reach{rounded_up(part_.speed * part_.half + part_.pad + 2 * error_),
                       std::numeric_limits<float>::infinity()};
     TurnedBlock turned;
-    for (std::size_t k = 0; k < group_count_; ++k) {
-      const Group& group = groups_[k];
+    for (const SweptList::Group& group : out_.groups) {
       context_.kernels.turn_nodes(moving_clusters_.bounds(0)[group.moving / kClusterWidth],
                                   context_.step.pose, turned);
-      const ClusterPairs clusters{turned, group.moving, {codes_.data() + group.first, group.count}};
+      const ClusterPairs clusters{
+          turned, group.moving, {out_.codes.data() + group.first, group.count}};
       const bool goes_on = in_turns(
           clusters,
           [&](const ClusterPairs& rest) {
@@ -139,19 +155,13 @@ class SweptPairs {
       const bool far = std::sqrt(distances.square[lane]) > reach_[lane];
       // Of triangles that intersect, the octet measured the borders.
       if (far && (apart_[lane] || !context_.meshes.meet(pairs_[lane].ids))) continue;
-      fits_ = out_.size() < most_;
+      fits_ = out_.pairs.size() < most_;
       if (!fits_) return false;
-      out_.push_back(pairs_[lane]);
+      out_.pairs.push_back(pairs_[lane]);
     }
     count_ = 0;
     return true;
   }
-
-  // Pairs of clusters, of one block of moving ones.
-  struct Group {
-    std::uint32_t moving;  // the first of the block
-    std::size_t first, count;
-  };
 
   VisitorContext context_;
   const TriangleMesh& moving_;
@@ -161,17 +171,13 @@ class SweptPairs {
   PlainMove plain_;
   double error_;
   std::size_t most_;
-  std::vector<SweptPair>& out_;
+  SweptList& out_;
   TriangleOctet octet_;
   SweptPair pairs_[TriangleOctet::kSize];
   bool apart_[TriangleOctet::kSize];
   double reach_[TriangleOctet::kSize];
   std::size_t count_ = 0;
   bool fits_ = true;
-  // A kernel may read a vector behind the last code.
-  std::array<std::uint32_t, kMostClusters + kClusterWidth> codes_;
-  std::array<Group, kMostClusters> groups_;
-  std::size_t code_count_ = 0, group_count_ = 0;
 };
 
 }  // namespace ist

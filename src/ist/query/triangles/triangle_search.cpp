@@ -392,7 +392,7 @@ TriangleSearch::Near TriangleSearch::near(const TrianglePose& pose, double enoug
 
 TriangleSearch::Swept TriangleSearch::swept(const RelativePose& middle, const ScrewPart& part,
                                             const Budget& budget, std::size_t most,
-                                            std::vector<SweptPair>& out) noexcept {
+                                            SweptList& out) noexcept {
   const Meshes meshes{*fixed_->triangles(), {*moving_->triangles(), part.middle}};
   const Sweep sweep(part, *fixed_clusters_);
   search_.begin(cluster_pose({part.middle, middle}), &sweep);

@@ -19,6 +19,8 @@
 
 namespace ist {
 
+struct SweptList;
+
 struct TriangleOptions {
   int workers;                      ///< 1 or 2
   std::chrono::nanoseconds period;  ///< as for ResidentWorker::tick
@@ -119,7 +121,7 @@ class TriangleSearch {
   };
   /// Lists all pairs of triangles that may meet on a part of a motion: swept_pairs().
   Swept swept(const RelativePose& middle, const ScrewPart& part, const Budget& budget,
-              std::size_t most, std::vector<SweptPair>& out) noexcept;
+              std::size_t most, SweptList& out) noexcept;
 
   void forget() noexcept {
     witnesses_ = {};
