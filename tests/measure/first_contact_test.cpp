@@ -214,6 +214,27 @@ TEST(FirstContact, GrazesFromTheFirstPlaceToTheLast) {
   EXPECT_NEAR(found.upper, (8 + 5.5) / 16, 1e-2);
 }
 
+// Far more triangles are near each other than one list holds, along the whole way.
+TEST(FirstContact, ManyNearTriangles_TakeLongerLists) {
+  constexpr std::uint32_t kSquares = 120;
+  TriangleMesh sheet;
+  for (std::uint32_t i = 0; i <= kSquares; ++i) {
+    for (std::uint32_t j = 0; j <= kSquares; ++j) {
+      sheet.vertices.emplace_back(0.1 * i, 0.1 * j, 0.01 * ((i * 7 + j * 3) % 5));
+      if (i == kSquares || j == kSquares) continue;
+      const std::uint32_t at = i * (kSquares + 1) + j, next = at + kSquares + 1;
+      sheet.triangles.push_back({at, next, at + 1});
+      sheet.triangles.push_back({next, next + 1, at + 1});
+    }
+  }
+  BodyPair pair(sheet, sheet, 0);
+  const Motion closing = Motion::between(place({0.02, 0.03, 0.2}), place({0.02, 0.03, -0.2}));
+  expect_contact(pair, closing, 1e-6, first_contact(pair.query, closing, 1e-6));
+  const FirstContact along =
+      first_contact(pair.query, place({0.02, 0.03, 0.05}), place({0.52, 0.03, 0.05}), 1e-6);
+  EXPECT_EQ(along.status, ContactStatus::kNone) << to_string(along.status);
+}
+
 // A corner or an edge goes through a face without thickness between two poses in double.
 TEST(FirstContact, ThinnerThanRounding_Passes) {
   const TriangleMesh face = triangle({-1, -1, 0.1}, {1, -1, 0.2}, {0, 1, 0.15});

@@ -35,11 +35,11 @@ constexpr double kSlowSteps = 64;
 // The direction of a distance is known if the distance is so many times the rounding.
 constexpr double kSharp = 64;
 // A list of more pairs costs more than two lists of half the way.
-constexpr std::size_t kFewPairs = 1024;
+constexpr std::size_t kFewPairs = 512;
 // So many parts before a contact are shorter than the one before.
 constexpr int kShorterParts = 2;
-// A list may be longer if the way was halved so often.
-constexpr int kMostHalves = 4;
+// Later lists may be twice as long if the way of one was halved more often.
+constexpr int kMostHalves = 2;
 
 // Returns the most speed of the vertices in use, by a box round them.
 double most_speed(const Motion& motion, const SphereTree& tree) {
@@ -197,7 +197,7 @@ class Advance {
   // Returns the next part's length over the last one's. The bodies come nearer to each other
   // towards a contact that is known; but it may be far.
   double growth() {
-    if (contact_ > 1) return listed_.pairs.size() < kFewPairs / 4 ? 2 : 1;
+    if (contact_ > 1) return listed_.pairs.size() < most_ / 4 ? 2 : 1;
     ++quiet_parts_;
     return quiet_parts_ <= kShorterParts ? 0.5 : quiet_parts_ == kShorterParts + 1 ? 1 : 2;
   }
@@ -205,7 +205,6 @@ class Advance {
   // Lists the pairs that may meet from a parameter on, for a part of the motion no longer than
   // `length`. Returns the end of the part; nothing if the search has ended.
   std::optional<double> list_pairs(double at, double length) {
-    std::size_t most = kFewPairs;
     for (int halves = 0;; ++halves) {
       if (!goes_on(at)) return std::nullopt;
       const double until = end_of(at, length), middle = at + 0.5 * (until - at);
@@ -213,7 +212,7 @@ class Advance {
       part_.middle = *project_to_rigid(motion_.at(middle));
       part_.half = std::max(until - middle, middle - at);
       ++found_.distances;
-      const SweptPairsResult listed = swept_pairs(query_, part_, most, options_.budget, listed_);
+      const SweptPairsResult listed = swept_pairs(query_, part_, most_, options_.budget, listed_);
       if (is_busy_ || listed.status == QueryStatus::kBusy) {
         end(ContactStatus::kBusy, 0, 1);
         return std::nullopt;
@@ -225,7 +224,7 @@ class Advance {
       if (listed.fits) return until;
       length = 0.5 * (until - at);
       quiet_parts_ = 0;
-      if (halves >= kMostHalves) most *= 2;
+      if (halves >= kMostHalves) most_ *= 2;
     }
   }
 
@@ -330,6 +329,7 @@ class Advance {
   double rounding_ = 0, tolerance_ = 0;
   ScrewPart part_;  // the last one that was listed
   FirstContact found_;
+  std::size_t most_ = kFewPairs;  // of a list
   SweptList listed_;              // that may meet on it
   std::vector<Waiting> waiting_;  // a heap
   int quiet_parts_ = 0;           // since a list was too long, or a contact was found

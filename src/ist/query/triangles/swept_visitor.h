@@ -42,6 +42,9 @@ struct SweptList {
 class SweptPairs {
  public:
   static constexpr bool kMostFirst = false, kMeasuresRest = false;
+  /// If the way is longer than the clusters' radii, all their triangles are compared: a pair counts
+  /// as so many.
+  static constexpr std::size_t kFarWork = 8;
 
   /// @param error of a distance in double, mesh units
   /// @param most  more pairs, of clusters or of triangles, end the search; `out` has room for them,
@@ -56,6 +59,8 @@ class SweptPairs {
         at_start_(moving, part.start),
         plain_(plain_move(part.middle)),
         error_(error),
+        reach_{rounded_up(part.speed * part.half + part.pad + 2 * error),
+               std::numeric_limits<float>::infinity()},
         most_(most),
         out_(out) {}
 
@@ -66,7 +71,14 @@ class SweptPairs {
   }
   bool visit(const ClusterPairs& clusters) noexcept {
     const LaneNodes& pairs = clusters.pairs;
-    fits_ = out_.codes.size() + pairs.count <= most_;
+    const NodeBlock& moving = moving_clusters_.bounds(0)[clusters.moving / kClusterWidth];
+    for (std::size_t k = 0; k < pairs.count; ++k) {
+      const std::uint32_t lane = pairs.lane(k), node = pairs.node(k);
+      const NodeBlock& fixed = context_.step.fixed_nodes.blocks[node / kClusterWidth];
+      const float radii = moving.radius[lane] + fixed.radius[node % kClusterWidth];
+      work_ += reach_.triangles > radii ? kFarWork : 1;
+    }
+    fits_ = work_ <= most_;
     if (!fits_ || pairs.count == 0) return fits_;
     out_.groups.push_back({clusters.moving, out_.codes.size(), pairs.count});
     out_.codes.insert(out_.codes.end(), pairs.codes, pairs.codes + pairs.count);
@@ -75,8 +87,6 @@ class SweptPairs {
   /// Compares the triangles. Returns false if there are too many pairs, or if the deadline came
   /// before the end.
   bool finish() noexcept {
-    const Reach reach{rounded_up(part_.speed * part_.half + part_.pad + 2 * error_),
-                      std::numeric_limits<float>::infinity()};
     TurnedBlock turned;
     for (const SweptList::Group& group : out_.groups) {
       context_.kernels.turn_nodes(moving_clusters_.bounds(0)[group.moving / kClusterWidth],
@@ -86,7 +96,7 @@ class SweptPairs {
       const bool goes_on = in_turns(
           clusters,
           [&](const ClusterPairs& rest) {
-            Reach same = reach;
+            Reach same = reach_;
             return context_.kernels.near_clusters(context_.step, rest, same, context_.batch,
                                                   context_.found);
           },
@@ -138,7 +148,7 @@ class SweptPairs {
     set_lane(octet_.moving, count_, moving_, ids.moving);
     pairs_[count_] = {after, ids};
     apart_[count_] = apart;
-    reach_[count_++] = fastest * part_.half + part_.pad + error_;
+    enough_[count_++] = fastest * part_.half + part_.pad + error_;
     return true;
   }
   // Keeps the pairs of the octet that are near enough in the middle of the part. Returns false if
@@ -152,7 +162,7 @@ class SweptPairs {
     OctetDistances distances;
     context_.kernels.closest_octet(octet_, plain_, distances);
     for (std::size_t lane = 0; lane < count_; ++lane) {
-      const bool far = std::sqrt(distances.square[lane]) > reach_[lane];
+      const bool far = std::sqrt(distances.square[lane]) > enough_[lane];
       // Of triangles that intersect, the octet measured the borders.
       if (far && (apart_[lane] || !context_.meshes.meet(pairs_[lane].ids))) continue;
       fits_ = out_.pairs.size() < most_;
@@ -170,13 +180,15 @@ class SweptPairs {
   MovedTriangles at_start_;
   PlainMove plain_;
   double error_;
+  Reach reach_;
   std::size_t most_;
   SweptList& out_;
   TriangleOctet octet_;
   SweptPair pairs_[TriangleOctet::kSize];
   bool apart_[TriangleOctet::kSize];
-  double reach_[TriangleOctet::kSize];
+  double enough_[TriangleOctet::kSize];
   std::size_t count_ = 0;
+  std::size_t work_ = 0;  // of the pairs of clusters
   bool fits_ = true;
 };
 
