@@ -217,6 +217,10 @@ const int kRegistered = [] {
   add("measure/first_contact/screw", [](auto& state) {
     first(state, Motion::screw(lifted(-7), {0, 0, 0}, {0, 0.1, 1}, 0.05, 7));
   });
+  add("measure/first_contact/short",
+      [](auto& state) { first(state, Motion::between(lifted(-1.4), lifted(-1.2))); });
+  add("measure/first_contact/opening",
+      [](auto& state) { first(state, Motion::between(lifted(-1.4), lifted(-20))); });
   add("measure/normals/upper", [](auto& state) { normals(state, upper_jaw()); });
   add("measure/normals/lower", [](auto& state) { normals(state, lower_jaw()); });
   add_by_accuracy();

@@ -209,6 +209,7 @@ class FirstContact(NamedTuple):
     rotation_error: float
     place: Optional[Tuple[F8, F8]]
     normal: Optional[F8]
+    passes: bool
 
 class BodyOcclusion(NamedTuple):
     distances: Records
