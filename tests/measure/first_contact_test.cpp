@@ -288,6 +288,16 @@ TEST(FirstContact, AlongAScrewOfMoreThanATurn) {
   EXPECT_NE(shortest.status, ContactStatus::kContact) << "at 72 degrees it is past nothing";
 }
 
+// The middle of the rod stays. The ends alone move, and pass the post early on the way.
+TEST(FirstContact, OfARodThatTurnsAboutItsMiddle) {
+  const Vector post(5 * std::cos(0.1), 5 * std::sin(0.1), 0), half(0.01, 0.01, 1);
+  BodyPair pair(box(post - half, post + half), box({-5.2, -0.01, -0.01}, {5.2, 0.01, 0.01}), 0);
+  const Motion motion = Motion::screw(place({0, 0, 0}), {0, 0, 0}, {0, 0, 1}, 1.5, 0);
+  const FirstContact found = first_contact(pair.query, motion, 1e-6);
+  expect_contact(pair, motion, 1e-6, found);
+  EXPECT_NEAR(found.upper * 1.5, 0.1, 0.01);
+}
+
 TEST(FirstContact, IsNoLaterThanAnyOfManySamples) {
   Random random(83);
   int contacts = 0;
