@@ -7,6 +7,7 @@
 
 #include "c/objects.h"
 #include "ist/base/float_environment.h"
+#include "ist/measure/penetration.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
@@ -69,6 +70,7 @@ ist_tree_info tree_info_of(const Tree& object) {
   info.bounding_radius = tree.bounding_radius();
   info.largest_leaf_radius = tree.largest_leaf_radius(tree.tightest());
   info.frame = static_cast<std::int32_t>(tree.frame());
+  info.prepared_for_depth = ist::is_prepared_for_depth(tree);
   return info;
 }
 
@@ -166,6 +168,21 @@ ist_status ist_tree_self_intersections(const ist_tree* tree, uint64_t* pairs) IS
     const Held<Tree> held(call, "tree", tree);
     if (!held) return;
     *pairs = held->tree.self_intersections();
+  });
+}
+
+ist_status ist_tree_prepare_depth(const ist_tree* tree, uint64_t max_memory,
+                                  const ist_progress* progress) IST_NOEXCEPT {
+  return guarded(__func__, [&](Call& call) {
+    const Follower follower = read_follower(call, progress);
+    const Held<Tree> held(call, "tree", tree);
+    if (!held) return;
+    constexpr unsigned kStages = 3;  // outer balls are placed, painted and filled
+    ist::Progress made;
+    const bool whole = followed(follower, made, kStages, [&] {
+      ist::prepare_depth(held->tree, max_memory > 0 ? max_memory : ist::kMostBallBytes, &made);
+    });
+    if (!whole) cancelled(call);
   });
 }
 

@@ -135,6 +135,42 @@ TEST_F(CMeasure, PenetrationIsThatOfCppAndGoesOnFromTheLast) {
   EXPECT_EQ(name(ist_query_free(open)), "ok");
 }
 
+// Saved trees keep the balls.
+TEST_F(CMeasure, PreparedBodiesHaveTheSameDepth) {
+  const auto pose = down_by(0, 0, 1.25);
+  ist_tree *large = c_tree(icosphere(3, 1), 0.5), *small = c_tree(icosphere(3, 0.5), 0.5);
+  const auto is_prepared = [](const ist_tree* tree) {
+    auto info = sized<ist_tree_info>();
+    EXPECT_EQ(name(ist_tree_get_info(tree, &info)), "ok");
+    return info.prepared_for_depth;
+  };
+  auto before = sized<ist_penetration>(), after = sized<ist_penetration>();
+  const auto ask = [&](ist_penetration& result) {
+    ist_query* query = nullptr;
+    EXPECT_EQ(name(ist_query_create(large, small, nullptr, &query)), "ok");
+    EXPECT_EQ(name(ist_query_penetration(query, pose.data(), 1e-4, nullptr, nullptr, nullptr, &result)),
+              "ok");
+    EXPECT_EQ(name(ist_query_free(query)), "ok");
+  };
+  ask(before);
+  EXPECT_EQ(name(ist_tree_prepare_depth(large, 100, nullptr)), "memory-limit");
+  int reports = 0;
+  const auto progress = sized<ist_progress>({0, stop, &reports});
+  EXPECT_EQ(name(ist_tree_prepare_depth(large, 0, &progress)), "cancelled");
+  EXPECT_EQ(is_prepared(large), 0);
+  for (const ist_tree* tree : {large, small}) {
+    EXPECT_EQ(name(ist_tree_prepare_depth(tree, 0, nullptr)), "ok");
+    EXPECT_EQ(is_prepared(tree), 1);
+  }
+  ask(after);
+  EXPECT_EQ(after.complete, 1);
+  EXPECT_GT(after.lower, 0.2);
+  EXPECT_LE(before.lower, after.upper);
+  EXPECT_LE(after.lower, before.upper);
+  EXPECT_LT(after.points, before.points);
+  EXPECT_EQ(name(ist_tree_prepare_depth(nullptr, 0, nullptr)), "null-argument");
+}
+
 TEST_F(CMeasure, ASurfaceThatIntersectsItself_SaysSo) {
   const TriangleMesh two = joined(box({0, 0, 0}, {2, 2, 2}), box({1.5, 0.5, 0.5}, {3.5, 1.5, 1.5}));
   ist_tree* tree = c_tree(two, 0.5);

@@ -268,6 +268,18 @@ void expect_same(const std::vector<SurfaceDistance>& a, const std::vector<Surfac
   }
 }
 
+TEST(OuterBalls, AreMadeForManyDepthsOfClosedBodies) {
+  const TriangleMesh ball = icosphere(4, 1);  // 5,120 triangles
+  const SphereTree fixed = build_tree(ball), moving = build_tree(ball), open = build_tree(open_strip(3));
+  EXPECT_FALSE(prepare_depth_for(99, fixed, moving));
+  EXPECT_FALSE(is_prepared_for_depth(fixed));
+  EXPECT_FALSE(prepare_depth_for(1'000'000, fixed, open));
+  EXPECT_FALSE(is_prepared_for_depth(fixed) || is_prepared_for_depth(open));
+  EXPECT_TRUE(prepare_depth_for(100, fixed, moving));
+  EXPECT_TRUE(is_prepared_for_depth(fixed) && is_prepared_for_depth(moving));
+  EXPECT_TRUE(prepare_depth_for(1, fixed, moving)) << "both have them already";
+}
+
 // Open bodies too: only the emptiness of balls counts.
 TEST(OuterBalls, LeaveDistanceMapsAsTheyWere) {
   std::vector<Case> all = bodies();

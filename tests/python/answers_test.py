@@ -246,6 +246,19 @@ class Verbs(Jaws):
         self.assertTrue(found.lower <= 2.9 / 6 <= found.upper)
         self.assertFalse(self.query.first_contact(JAW_POSES[0], JAW_POSES[2], 1e-3).passes)
 
+    def test_prepared_bodies_have_the_same_depth(self):
+        ball = ist.build(box([-1, -1, -1], [1, 1, 1]))
+        self.assertFalse(ball.prepared_for_depth)
+        query = ist.Query(ball, ball)
+        before = query.penetration(pose_of([1, 2, 3], 0.4, [0.2, 0.3, 1.5]), 1e-6)
+        self.assertIs(ball.prepare_depth(), ball)
+        self.assertTrue(ball.prepared_for_depth)
+        after = query.penetration(pose_of([1, 2, 3], 0.4, [0.2, 0.3, 1.5]), 1e-6)
+        self.assertTrue(before.lower <= after.upper and after.lower <= before.upper)
+        self.assertTrue(pickle.loads(pickle.dumps(ball)).prepared_for_depth)
+        with self.assertRaises(ist.MemoryLimitError):
+            ist.build(box([-1, -1, -1], [1, 1, 1])).prepare_depth(max_memory=10)
+
     def test_a_box_settles_on_a_plate(self):
         query = ist.Query(ist.build(box([-20, -20, -2], [20, 20, 0])), ist.build(box([-5, -5, 0], [5, 5, 10])))
         start = pose_of([1, 0, 0], 0.01, [0.5, 0.25, 0.6])

@@ -48,6 +48,9 @@ double largest_way(const Eigen::AlignedBox3d& box, const RigidMove& from, const 
 // A front is made anew after a way of as many sizes of the bodies: its bounds are then too loose,
 // and sums of ways would round.
 constexpr double kLongestWay = 16;
+// A search without outer balls takes as long as the balls of so many triangles. Fewer depths than
+// kFewDepths never pay for balls.
+constexpr std::uint64_t kTrianglesOfADepth = 800, kFewDepths = 100;
 
 }  // namespace
 
@@ -137,6 +140,19 @@ void prepare_depth(const SphereTree& tree, std::uint64_t max_memory, Progress* p
   require_triangles(tree, "tree");
   if (has_balls(tree)) return;
   parts_of(tree).triangles->keep_outer_balls(make_outer_balls(tree, max_memory, progress));
+}
+
+bool prepare_depth_for(std::uint64_t depths, const SphereTree& fixed, const SphereTree& moving,
+                       Progress* progress) {
+  std::uint64_t triangles = 0;
+  for (const SphereTree* tree : {&fixed, &moving}) {
+    const bool closed = tree->orientation() == Orientation::kOutward;
+    if (tree->triangles() == nullptr || !closed) return false;
+    triangles += is_prepared_for_depth(*tree) ? 0 : tree->triangles()->triangles.size();
+  }
+  if (triangles > 0 && depths < std::max(kFewDepths, triangles / kTrianglesOfADepth)) return false;
+  for (const SphereTree* tree : {&fixed, &moving}) prepare_depth(*tree, kMostBallBytes, progress);
+  return true;
 }
 
 bool is_prepared_for_depth(const SphereTree& tree) noexcept {

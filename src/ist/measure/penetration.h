@@ -114,6 +114,9 @@ struct PenetrationOptions {
                                               double tolerance,
                                               const PenetrationOptions& options = {});
 
+/// The most memory that outer balls take unless a program says more, bytes.
+constexpr std::uint64_t kMostBallBytes = std::uint64_t{1} << 30;
+
 /// Makes the outer balls of a body, by which penetration() is 20 to 40 times and distance_map()
 /// 1.4 to 1.7 times as fast. Copies of the tree share them. A tree that has them stays as it is.
 /// Answers are as true as without them, and have other ends; points may be other points.
@@ -126,9 +129,14 @@ struct PenetrationOptions {
 /// Memory: at most 28 bytes a triangle, or 1 MiB if that is more. Cost: 9 to 18 µs a triangle,
 /// shared by all cores. Any thread may call it, but none within a tick. The same balls for any
 /// number of threads. Throws kTrianglesMissing, kMemoryLimit and kCancelled.
-IST_API void prepare_depth(const SphereTree& tree,
-                           std::uint64_t max_memory = std::uint64_t{1} << 30,
+IST_API void prepare_depth(const SphereTree& tree, std::uint64_t max_memory = kMostBallBytes,
                            Progress* progress = nullptr);
+
+/// Prepares both bodies if that takes less time than it saves in so many depths: from 100 depths on,
+/// and one for each 800 triangles. Bodies that are open or have no triangles stay as they are. Throws as
+/// prepare_depth(). Returns whether both bodies have outer balls.
+IST_API bool prepare_depth_for(std::uint64_t depths, const SphereTree& fixed,
+                               const SphereTree& moving, Progress* progress = nullptr);
 
 /// Returns whether a tree has outer balls.
 [[nodiscard]] IST_API bool is_prepared_for_depth(const SphereTree& tree) noexcept;

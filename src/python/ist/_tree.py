@@ -68,6 +68,23 @@ class Tree(Handle):
         return pairs.value
 
     @property
+    def prepared_for_depth(self):
+        """Whether the tree has outer balls: prepare_depth()."""
+        info = TreeInfo()
+        check(LIBRARY.ist_tree_get_info(self._need(), ctypes.addressof(info)))
+        return bool(info.prepared_for_depth)
+
+    def prepare_depth(self, *, max_memory=1 << 30, progress=None):
+        """Makes the outer balls of the body: if both bodies of a query have them, penetration() takes a 20th of the time.
+
+        save() saves them. A body needs at most 28 bytes a triangle, and 9 to 18 µs, on all cores. Returns the tree.
+        """
+        with Follower(progress) as follower:
+            status = LIBRARY.ist_tree_prepare_depth(self._need(), count_of(max_memory, "max_memory", least=1), follower.address)
+            follower.finish(status)
+        return self
+
+    @property
     def origin(self):
         """The origin of the tree's frame, (3,), mesh coordinates. Torques are about the fixed tree's origin."""
         return self._kept("origin", lambda: np.array(self._info.origin))
