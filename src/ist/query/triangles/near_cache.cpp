@@ -36,6 +36,16 @@ constexpr std::uint64_t kPause = 64;
 // The tests that take as long as a pair of the list.
 constexpr std::uint64_t kPairTests = 48;
 
+void copy_lane(const TriangleOctet& from, std::size_t lane, TriangleOctet& to,
+               std::size_t at) noexcept {
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      to.fixed[k][i][at] = from.fixed[k][i][lane];
+      to.moving[k][i][at] = from.moving[k][i][lane];
+    }
+  }
+}
+
 }  // namespace
 
 NearCache::NearCache(const TriangleMesh& fixed, const TriangleMesh& moving,
@@ -102,22 +112,83 @@ bool NearCache::find(const Need& need) noexcept {
 }
 
 bool NearCache::answer(NearDecision& decision, std::uint64_t& measured) noexcept {
-  const List& list = kept();
+  List& list = kept();
   // The distance of a pair is less than at the centre by no more than this.
   const double nearer = motion_ + 4 * error_;
+  const double far = decision.enough() + 4 * error_;
+  // The pairs that no bound leaves out.
+  TriangleOctet corners{};
+  TriangleIds ids[TriangleOctet::kSize];
+  struct Place {
+    Block* block;
+    std::size_t lane;
+  } places[TriangleOctet::kSize];
+  std::size_t count = 0;
+  std::uint32_t apart = 0;
+  const auto measure = [&] {
+    if (decision.context().budget.is_past()) return false;
+    decision.take(corners, {ids, count}, apart, [&](std::size_t at, const auto& closest) {
+      set_plane(*places[at].block, places[at].lane, closest());
+    });
+    measured += std::exchange(count, 0);
+    apart = 0;
+    return true;
+  };
   for (std::size_t k = 0; k < list.used; ++k) {
-    const Block& block = list.blocks[k];
-    const bool far = block.least - nearer > decision.enough();
-    if ((!far || k % kUnwatchedBlocks == 0) && decision.context().budget.is_past()) return false;
-    if (far) continue;
-    std::uint32_t apart = 0;
+    Block& block = list.blocks[k];
+    if (k % kUnwatchedBlocks == 0 && decision.context().budget.is_past()) return false;
+    if (block.least - nearer > decision.enough()) continue;
+    const std::uint32_t left_out = parted(block, decision.move(), far);
     for (std::size_t lane = 0; lane < block.count; ++lane) {
-      if (block.distance[lane] > nearer) apart |= std::uint32_t{1} << lane;
+      if ((left_out >> lane & 1U) != 0) continue;
+      if (block.distance[lane] > nearer) apart |= std::uint32_t{1} << count;
+      copy_lane(block.corners, lane, corners, count);
+      ids[count] = block.ids[lane];
+      places[count] = {&block, lane};
+      if (++count == TriangleOctet::kSize && !measure()) return false;
     }
-    decision.take(block.corners, {block.ids, block.count}, apart);
-    measured += block.count;
   }
-  return true;
+  return count == 0 || measure();
+}
+
+std::uint32_t NearCache::parted(const Block& block, const PlainMove& move, double least) noexcept {
+  const auto& r = move.rotation;
+  const auto& t = move.translation;
+  double room[TriangleOctet::kSize];
+  for (std::size_t lane = 0; lane < TriangleOctet::kSize; ++lane) {
+    const double x = block.normal[0][lane], y = block.normal[1][lane], z = block.normal[2][lane];
+    // The normal in moving coordinates.
+    const double u = (r[0][0] * x + r[1][0] * y) + r[2][0] * z;
+    const double v = (r[0][1] * x + r[1][1] * y) + r[2][1] * z;
+    const double w = (r[0][2] * x + r[1][2] * y) + r[2][2] * z;
+    double bottom = HUGE_VAL;
+    for (const auto& corner : block.corners.moving) {
+      const double height = (u * corner[0][lane] + v * corner[1][lane]) + w * corner[2][lane];
+      bottom = height < bottom ? height : bottom;
+    }
+    room[lane] = (bottom + ((x * t[0] + y * t[1]) + z * t[2])) - block.top[lane];
+  }
+  std::uint32_t bits = 0;
+  for (std::size_t lane = 0; lane < TriangleOctet::kSize; ++lane) {
+    bits |= std::uint32_t{room[lane] > least} << lane;
+  }
+  return bits;
+}
+
+void NearCache::set_plane(Block& block, std::size_t lane, const NearPair& closest) noexcept {
+  const Eigen::Vector3d way = difference(closest.moving_point, closest.fixed_point);
+  const double length = length_in_order(way);
+  if (!(length > 0)) return;
+  const Eigen::Vector3d normal = scaled(1 / length, way);
+  double top = -HUGE_VAL;
+  for (const auto& corner : block.corners.fixed) {
+    const Eigen::Vector3d at(corner[0][lane], corner[1][lane], corner[2][lane]);
+    top = std::max(top, dot_in_order(normal, at));
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    block.normal[i][lane] = normal[static_cast<Eigen::Index>(i)];
+  }
+  block.top[lane] = top;
 }
 
 double NearCache::slack_of(const Need& need) const noexcept {
@@ -239,8 +310,11 @@ bool NearCache::add(TriangleIds ids, double distance) noexcept {
   if (open == 0) {
     if (list.used == list.blocks.size()) return false;
     open = ++list.used;
-    list.blocks[open - 1].count = 0;
-    list.blocks[open - 1].least = distance;
+    Block& begun = list.blocks[open - 1];
+    begun.count = 0;
+    begun.least = distance;
+    std::fill_n(&begun.normal[0][0], 3 * TriangleOctet::kSize, 0.0);
+    std::fill_n(begun.top, TriangleOctet::kSize, 0.0);
   }
   Block& block = list.blocks[open - 1];
   // The lanes behind the last one hold any numbers: they are computed, and not read.

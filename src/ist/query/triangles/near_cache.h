@@ -88,6 +88,9 @@ class NearCache {
     TriangleOctet corners;
     TriangleIds ids[TriangleOctet::kSize];
     double distance[TriangleOctet::kSize];  // lower bounds at the centre
+    // Planes between the triangles: their normals, and how high the fixed triangles reach. 0 before
+    // a pair was measured and left out.
+    double normal[3][TriangleOctet::kSize], top[TriangleOctet::kSize];
     double least;
     std::size_t count;
   };
@@ -119,6 +122,10 @@ class NearCache {
   [[nodiscard]] bool begin_here(const Need& need) noexcept;
   void use_next(const Need& need) noexcept;
   void advance(std::uint64_t most, const Budget& budget, FoundMemory& memory) noexcept;
+  // Returns, as bits, the lanes whose planes have more room than `least` between the triangles.
+  [[nodiscard]] static std::uint32_t parted(const Block& block, const PlainMove& move,
+                                            double least) noexcept;
+  static void set_plane(Block& block, std::size_t lane, const NearPair& closest) noexcept;
   [[nodiscard]] bool take(FoundTriangles& found) noexcept;
   [[nodiscard]] bool add(TriangleIds ids, double distance) noexcept;
   void set_width() noexcept;
