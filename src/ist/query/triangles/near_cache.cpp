@@ -27,6 +27,9 @@ constexpr double kMostMargins = 1.5, kMostTicks = 3;
 constexpr double kNarrowest = 0.3, kWidest = 16;
 // The part of its slack by which the centre of a list that is filled at once lies ahead.
 constexpr double kAhead = 0.5;
+// A body is slow if it moves by less than so many slacks while a list is filled. Its list then has
+// at least this part of the slack left.
+constexpr double kSlow = 0.25, kCentred = 0.5;
 // Beyond this a float does not hold a reach.
 constexpr double kLargestReach = 0x1p100;
 // Blocks between two looks at the clock.
@@ -244,8 +247,10 @@ bool NearCache::want(const Need& need, std::uint64_t tests) noexcept {
     if (holds(next(), ahead(until), need) || holds(next(), poses_[0], need)) return false;
     next().state = State::kEmpty;
   }
-  const bool lasts =
-      holds_now && holds(kept(), ahead(slices + 2), need, slices * (speed_ - drift_));
+  // A body that is slow gets a list round it, since it may become fast at once.
+  const bool is_aside = kMostSlices * speed_ < kSlow * slack && spare < kCentred * slack;
+  const bool lasts = !is_aside && holds_now &&
+                     holds(kept(), ahead(slices + 2), need, slices * (speed_ - drift_));
   if (lasts || pause_ > 0 || ticks < kFewestTicks || ticks_ < 3) return false;
   begin(need, slack, slices + (drift_ > 0 ? std::min(0.8 * slack / drift_, kWantedTicks) : 0));
   slice_ = std::max(kLeastSlice,

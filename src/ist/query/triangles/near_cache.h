@@ -62,11 +62,16 @@ class NearCache {
   template <class PoseOf>
   [[nodiscard]] bool fill(const Need& need, const Budget& budget, FoundMemory& memory,
                           std::uint64_t& tests, PoseOf pose_of) noexcept {
-    if (!begin_here(need)) return false;
-    const ClusterPose pose = pose_of(to_isometry(next().centre));
-    walk_.begin(pose, rounded_up(next().reach + double{pose.error}));
+    // A list that is filled in slices goes on.
+    const bool goes_on = next().state == State::kFilling && holds(next(), poses_[0], need);
+    const std::uint64_t before = goes_on ? walk_.tests() : 0;
+    if (!goes_on) {
+      if (!begin_here(need)) return false;
+      const ClusterPose pose = pose_of(to_isometry(next().centre));
+      walk_.begin(pose, rounded_up(next().reach + double{pose.error}));
+    }
     advance(std::numeric_limits<std::uint64_t>::max(), budget, memory);
-    tests += walk_.tests();
+    tests += walk_.tests() - before;
     if (next().state != State::kReady) {
       next().state = State::kEmpty;
       return false;
