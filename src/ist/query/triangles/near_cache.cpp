@@ -21,9 +21,17 @@ constexpr double kFewestSlices = 2, kMostSlices = 32;
 // The fewest tests of a slice, 8 µs.
 constexpr std::uint64_t kLeastSlice = 2'000;
 // A list of fewer pairs could be wider, and one of more should be narrower.
-constexpr std::uint64_t kFewPairs = 96, kManyPairs = 384;
-// The most slack: in margins, or in ticks of the speed.
-constexpr double kMostMargins = 1.5, kMostTicks = 3;
+constexpr std::uint64_t kFewPairs = 300, kManyPairs = 1'200;
+// The least slack of a wide list, in margins: a body that slips has some ticks until it is used up.
+constexpr double kLeastMargins = 3;
+// The most slack of a list that is filled at once, and of one that is filled in slices: in margins,
+// or in ticks of the speed.
+constexpr double kMarginsAtOnce = 1.5, kTicksAtOnce = 3, kMostMargins = 3, kMostTicks = 6;
+// The part of a list's life in which the next one is filled.
+constexpr double kFilling = 1 / 1.3;
+// The part of its slack by which the centre of a list that is filled in slices lies ahead of the
+// pose at which it is ready.
+constexpr double kFarAhead = 0.7;
 constexpr double kNarrowest = 0.3, kWidest = 16;
 // The part of its slack by which the centre of a list that is filled at once lies ahead.
 constexpr double kAhead = 0.5;
@@ -36,8 +44,8 @@ constexpr double kLargestReach = 0x1p100;
 constexpr std::size_t kUnwatchedBlocks = 256;
 // Ticks without a list after one that had no room.
 constexpr std::uint64_t kPause = 64;
-// The tests that take as long as a pair of the list.
-constexpr std::uint64_t kPairTests = 48;
+// The tests that take as long as a pair that a list takes.
+constexpr std::uint64_t kPairTests = 20;
 
 void copy_lane(const TriangleOctet& from, std::size_t lane, TriangleOctet& to,
                std::size_t at) noexcept {
@@ -194,9 +202,10 @@ void NearCache::set_plane(Block& block, std::size_t lane, const NearPair& closes
   block.top[lane] = top;
 }
 
-double NearCache::slack_of(const Need& need) const noexcept {
-  const double wanted = width_ * std::max(kWantedTicks / 2 * speed_, need.enough / 8);
-  return std::min(wanted, std::max(kMostMargins * need.enough, kMostTicks * speed_));
+// Returns a slack of at most so many margins, or ticks of the speed.
+double NearCache::slack_of(const Need& need, double margins, double ticks) const noexcept {
+  const double wanted = width_ * std::max(kWantedTicks / 2 * speed_, kLeastMargins * need.enough);
+  return std::min(wanted, std::max(margins * need.enough, ticks * speed_));
 }
 
 // Begins a list whose centre lies so many ticks ahead.
@@ -213,7 +222,7 @@ void NearCache::begin(const Need& need, double slack, double ticks) noexcept {
 
 // Begins a list that is filled at once. Returns whether it is worth its search.
 bool NearCache::begin_here(const Need& need) noexcept {
-  const double slack = slack_of(need);
+  const double slack = slack_of(need, kMarginsAtOnce, kTicksAtOnce);
   const bool lasts = (1 + kAhead) * slack >= kFewestAtOnce * speed_;
   if (pause_ > 0 || !lasts || !(need.enough + slack < kLargestReach)) return false;
   begin(need, slack, drift_ > 0 ? std::min(kAhead * slack / drift_, kWantedTicks) : 0);
@@ -234,13 +243,13 @@ void NearCache::use_next(const Need& need) noexcept {
 bool NearCache::want(const Need& need, std::uint64_t tests) noexcept {
   if (tests > 0 && list_tests_ == 0) list_tests_ = 2 * tests;
   pause_ -= pause_ > 0 ? 1 : 0;
-  const double slack = slack_of(need);
+  const double slack = slack_of(need, kMostMargins, kMostTicks);
   if (!(need.enough + slack < kLargestReach)) return false;
   const double ticks = speed_ > 0 ? 2 * slack / speed_ : HUGE_VAL;
   const bool holds_now = kept().state == State::kKept;
   const double spare = holds_now ? kept().reach - need.enough - way(kept().centre, poses_[0]) : 0;
   const double left = !holds_now ? kFewestSlices : speed_ > 0 ? spare / speed_ - 1 : HUGE_VAL;
-  const double slices = std::clamp(std::min(ticks / 3, left), kFewestSlices, kMostSlices);
+  const double slices = std::clamp(std::min(kFilling * ticks, left), kFewestSlices, kMostSlices);
   if (next().state != State::kEmpty) {
     // It is dropped if the body does not come to it.
     const double until = next().state == State::kReady ? 2 : slices;
@@ -249,12 +258,13 @@ bool NearCache::want(const Need& need, std::uint64_t tests) noexcept {
   }
   // A body that is slow gets a list round it, since it may become fast at once.
   const bool is_aside = kMostSlices * speed_ < kSlow * slack && spare < kCentred * slack;
-  const bool lasts = !is_aside && holds_now &&
-                     holds(kept(), ahead(slices + 2), need, slices * (speed_ - drift_));
+  const bool lasts =
+      !is_aside && holds_now && holds(kept(), ahead(slices + 2), need, slices * (speed_ - drift_));
   if (lasts || pause_ > 0 || ticks < kFewestTicks || ticks_ < 3) return false;
-  begin(need, slack, slices + (drift_ > 0 ? std::min(0.8 * slack / drift_, kWantedTicks) : 0));
-  slice_ = std::max(kLeastSlice,
-                    static_cast<std::uint64_t>(1.25 * static_cast<double>(list_tests_) / slices));
+  begin(need, slack,
+        slices + (drift_ > 0 ? std::min(kFarAhead * slack / drift_, kWantedTicks) : 0));
+  slice_ =
+      std::max(kLeastSlice, static_cast<std::uint64_t>(static_cast<double>(list_tests_) / slices));
   return true;
 }
 
@@ -297,7 +307,7 @@ bool NearCache::take(FoundTriangles& found) noexcept {
     if (add(found.open[k], std::sqrt(double{found.squares[k]}))) continue;
     next().state = State::kEmpty;
     pause_ = kPause;
-    width_ = 1;
+    width_ = std::max(width_ / 2, kNarrowest);
     return false;
   }
   return true;

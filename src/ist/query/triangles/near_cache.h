@@ -28,7 +28,7 @@ namespace ist {
 /// way. The answer is that of a fresh search, bit by bit.
 class NearCache {
  public:
-  /// Reserves all memory: two lists of so many pairs, 168 bytes each, and a ClusterWalk.
+  /// Reserves all memory: two lists of so many pairs, 195 bytes each, and a ClusterWalk.
   NearCache(const TriangleMesh& fixed, const TriangleMesh& moving,
             const TriangleClusters& fixed_clusters, const TriangleClusters& moving_clusters,
             const ClusterKernels& kernels, std::size_t pairs);
@@ -122,7 +122,7 @@ class NearCache {
                            double spare = 0) const noexcept;
   [[nodiscard]] RelativePose ahead(double ticks) const noexcept;
   [[nodiscard]] bool want(const Need& need, std::uint64_t tests) noexcept;
-  [[nodiscard]] double slack_of(const Need& need) const noexcept;
+  [[nodiscard]] double slack_of(const Need& need, double margins, double ticks) const noexcept;
   void begin(const Need& need, double slack, double ticks) noexcept;
   [[nodiscard]] bool begin_here(const Need& need) noexcept;
   void use_next(const Need& need) noexcept;

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <tuple>
 
 #include "ist/base/float_rounding.h"
 #include "ist/query/results.h"
@@ -44,9 +43,12 @@ class NearList {
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
 
  private:
-  static bool before(const NearPair& a, const NearPair& b) noexcept {
-    return std::tie(a.distance, a.triangles) < std::tie(b.distance, b.triangles);
-  }
+  struct Before {
+    bool operator()(const NearPair& a, const NearPair& b) const noexcept {
+      return a.distance < b.distance || (a.distance == b.distance && a.triangles < b.triangles);
+    }
+  };
+  static constexpr Before before{};
 
   std::span<NearPair> out_;
   std::uint64_t count_ = 0;
