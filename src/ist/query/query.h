@@ -57,7 +57,8 @@ struct QueryOptions {
   ///
   /// For a body that moves by less than some half of the margin from query to query. The answers
   /// are the same, bit by bit, but for `sphere_tests` and `found`. With a budget of tests every
-  /// query searches. Twice the pairs that are near is room enough, and 2,048 is a good number.
+  /// query searches. 2,048 is a good number, or three times the pairs that are near if these are
+  /// more.
   std::size_t near_pairs = 0;
 };
 

@@ -15,8 +15,10 @@ namespace ist {
 
 /// Carries near pairs from one pose to the next. A list holds all pairs within a reach at its
 /// centre. While the moving body stays within the list's slack of that centre, no other pair can be
-/// near, so only the listed pairs are measured again. The next list is filled in slices, before the
-/// last one is used up, for a centre ahead of the body. A tick pays for a slice.
+/// near, so only the listed pairs are measured again. A pair that was measured and is not near gets
+/// a plane between its triangles. It is not measured again while the plane has room enough. The
+/// next list is filled in slices, before the last one is used up, for a centre ahead of the body. A
+/// tick pays for a slice.
 ///
 ///              want            advance            find
 ///     kEmpty ---------> kFilling -------> kReady ----------> kKept
