@@ -228,7 +228,7 @@ MUTANTS = [
      "  block.least = std::min(block.least, distance);\n", "")], ["triangles_test NearCache.*"]),
     ("listed-pairs-never-nearer", "listed pairs that come nearer are skipped", [("near_cache.cpp", "= motion_ + 4 * error_;",
      "= 4 * error_;")], ["triangles_test NearCache.AnswersAsAFreshQueryOnAnyMotion"]),
-    ("minima-out-of-reach", "a minimum of two triangles is looked for within a tenth of their slopes", [("constraint/features.cpp",
+    ("minima-out-of-reach", "a minimum of two triangles is looked for within a tenth of their slopes", [("features.cpp",
      "kSpare * tolerance_ + kRounding", "0.1 * tolerance_ + kRounding")], ["wall_test FeatureList.HasAMinimumThatNearlyTies"]),
     ("planes-with-too-little-room", "the plane of a listed pair leaves the pair out a little too early", [("near_cache.cpp",
      "room[lane] > least}", "room[lane] > 0.9 * least}")], ["triangles_test NearCache.AnswersAsAFreshQueryOnAnyMotion"]),
