@@ -133,7 +133,8 @@ bool NearCache::answer(NearDecision& decision, std::uint64_t& measured) noexcept
   struct Place {
     Block* block;
     std::size_t lane;
-  } places[TriangleOctet::kSize];
+  };
+  Place places[TriangleOctet::kSize];
   std::size_t count = 0;
   std::uint32_t apart = 0;
   const auto measure = [&] {
