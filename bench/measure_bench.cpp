@@ -323,6 +323,10 @@ const int kRegistered = [] {
   }
   add("measure/outer_balls/upper", [](auto& state) { outer_balls(state, upper_jaw()); });
   add("measure/outer_balls/lower", [](auto& state) { outer_balls(state, lower_jaw()); });
+  add("measure/first_contact/short",
+      [](auto& state) { first(state, Motion::between(lifted(-1.4), lifted(-1.2))); });
+  add("measure/first_contact/opening",
+      [](auto& state) { first(state, Motion::between(lifted(-1.4), lifted(-20))); });
   add("measure/normals/upper", [](auto& state) { normals(state, upper_jaw()); });
   add("measure/normals/lower", [](auto& state) { normals(state, lower_jaw()); });
   add_by_accuracy();

@@ -63,6 +63,7 @@ ist_first_contact first_contact_of(const FirstContact& found) {
   out.distance_upper = found.distance.upper;
   out.outcome = static_cast<std::int32_t>(found.status) + IST_FIRST_CONTACT;
   out.grazed = found.grazed;
+  out.passes = found.passes;
   out.triangles_known = found.triangles.has_value();
   if (found.triangles) {
     out.fixed = found.triangles->fixed;

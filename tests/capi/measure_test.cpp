@@ -181,6 +181,7 @@ TEST_F(CMeasure, FirstContactIsThatOfCpp) {
   EXPECT_EQ(result.outcome, IST_FIRST_CONTACT);
   EXPECT_EQ(result.lower, wanted.lower);
   EXPECT_EQ(result.upper, wanted.upper);
+  EXPECT_EQ(result.passes, wanted.passes ? 1 : 0);
   EXPECT_EQ(result.triangles_known, 1);
   EXPECT_EQ(result.moving, wanted.triangles->moving);
   ASSERT_TRUE(wanted.place.has_value());

@@ -255,6 +255,23 @@ TEST_F(Answers, FirstContactIsFoundBetweenTheSteps) {
            "not known without triangles"));
 }
 
+// A horizontal triangle goes through another one between two poses in double.
+TEST_F(Answers, TrianglesThatPassThroughEachOtherMeet) {
+  const std::string face = mesh("face.stl", triangle({-1, -1, 0.1}, {1, -1, 0.1}, {0, 1, 0.1}));
+  const std::string small = mesh("small.stl", triangle({-0.3, -0.2, 0}, {0.3, -0.2, 0}, {0, 0.2, 0}));
+  const auto between = [&](const char* from, const char* to) {
+    const auto told = ist_well({"approach", face, small, "--axis", "z", "--from", from, "--to", to, "--json"});
+    return json_lines(told.out).back();
+  };
+  const json found = between("3", "-3");
+  EXPECT_EQ(found["first_contact"], "contact") << found;
+  EXPECT_EQ(found["passes"], true);
+  EXPECT_EQ(found["grazed"], false);
+  const json none = between("3", "1");
+  EXPECT_EQ(none["first_contact"], "none");
+  EXPECT_EQ(none["passes"], false);
+}
+
 TEST_F(Answers, SelfIntersectionsAreTold) {
   const std::string small = cube(0.25);
   const TriangleMesh two = joined(box({-1, -1, -1}, {1, 1, 1}), box({0, -2, -2}, {3, 2, 2}));

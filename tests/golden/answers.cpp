@@ -210,7 +210,7 @@ constexpr std::array kAnswers = {
     GoldenAnswers{"distances", 0xe47c88ee01fc4669, hash_distances},
     GoldenAnswers{"triangle pairs", 0xf4fb385f0075206d, hash_triangle_pairs},
     GoldenAnswers{"penetration depths", 0x2adc10e0063bd7f3, hash_depths},
-    GoldenAnswers{"first contact", 0x4945cf639b972958, hash_first_contact},
+    GoldenAnswers{"first contact", 0xf510ec2d6e67eea0, hash_first_contact},
     GoldenAnswers{"distance maps", 0x0b43056e86f61326, hash_distance_maps},
     GoldenAnswers{"occlusion", 0x816fa098faf3e09c, hash_occlusion},
 };

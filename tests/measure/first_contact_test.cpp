@@ -20,12 +20,15 @@ using Vector = Eigen::Vector3d;
 using Pose = Eigen::Isometry3d;
 using ContactStatus = FirstContact::Status;
 
-// The interval is as narrow as was asked for, and at its end triangles intersect. The place is the
-// nearest one of the last distance.
+// The height at which a cube of edge 1 rests on a cube of edge 4, but for a gap less than rounding.
+constexpr double kRest = 2.5 + 0x1p-50;
+
+// The interval is as narrow as was asked for, and at its end triangles intersect, or have passed
+// through each other.
 void expect_contact(BodyPair& pair, const Motion& motion, double tolerance,
                     const FirstContact& found) {
   EXPECT_EQ(found.status, ContactStatus::kContact) << to_string(found.status);
-  EXPECT_TRUE(pair.meet(motion.at(found.upper)));
+  EXPECT_TRUE(found.passes || pair.meet(motion.at(found.upper)));
   EXPECT_LE(found.lower, found.upper);
   ASSERT_TRUE(found.triangles.has_value());
   ASSERT_TRUE(found.place.has_value());
@@ -127,7 +130,7 @@ TEST(FirstContact, WithoutAContact_HasNoPlace) {
     return first_contact(pair.query, place(from), place(to), 1e-3);
   };
   expect_none(along({0, 0, 9}, {0, 9, 9}), ContactStatus::kNone);
-  expect_none(along({0, 0, 2.50001}, {0.001, 0, 2.50001}), ContactStatus::kGrazing);
+  expect_none(along({0, 0, kRest}, {0.001, 0, kRest}), ContactStatus::kGrazing);
   expect_none(along({0, 0, 0}, {0, 0, 9}), ContactStatus::kInsideAtStart);
   expect_none(
       first_contact(pair.query, place({0, 0, 9}), place({0, 0, 0}), 1e-3, {.budget = {.tests = 1}}),
@@ -169,39 +172,82 @@ TEST(FirstContact, HasAStatusForEveryEnd) {
   EXPECT_EQ(status({0, 0, 9}, {0, 9, 9}), "none");
   EXPECT_EQ(status({0, 0, 9}, {0, 0, 9}), "none") << "a motion that is none";
   EXPECT_EQ(status({0, 0, 9}, {0, 0, 2.5}), "contact") << "at the last pose";
-  EXPECT_EQ(status({-9, 0, 2.50001}, {9, 0, 2.50001}), "grazing");
+  EXPECT_EQ(status({-9, 0, kRest}, {9, 0, kRest}), "grazing");
+  EXPECT_EQ(status({-9, 0, 2.50001}, {9, 0, 2.50001}), "none") << "the gap is more than rounding";
   EXPECT_EQ(status({0, 0, 9}, {0, 0, 2.50001}), "none") << "just not at the last pose";
   const FirstContact none = first_contact(pair.query, place({0, 0, 9}), place({0, 9, 9}), 1e-3);
   EXPECT_EQ(none.lower, 1);
   EXPECT_EQ(none.upper, 1);
 }
 
-// Along a face, nearer to it than a sixteenth of the tolerance, and then against a step.
+// Along a face, nearer to it than rounding, and then against a step.
 TEST(FirstContact, SaysWhereItGrazedBeforeTheContact) {
   IST_SLOW();
   BodyPair pair(joined(box({-9, -2, -2}, {9, 2, 0}), box({5, -2, 0.5}, {9, 2, 2})),
                 box({-1, -1, 0}, {1, 1, 1}));
-  const Motion motion = Motion::between(place({-8, 0, 1e-4}), place({8, 0, 1e-4}));
+  const auto along = [](double gap) {
+    return Motion::between(place({-8, 0, gap}), place({8, 0, gap}));
+  };
+  const Motion motion = along(1e-13);
   const FirstContact found = first_contact(pair.query, motion, 0.01);
   expect_contact(pair, motion, 0.01, found);
   EXPECT_TRUE(found.grazed);
   EXPECT_LE(found.lower, 1e-3);
   EXPECT_NEAR(found.upper, 0.75, 1e-3);
-  const FirstContact sharp = first_contact(pair.query, motion, 1e-3);
-  expect_contact(pair, motion, 1e-3, sharp);
-  EXPECT_FALSE(sharp.grazed);
-  EXPECT_NEAR(sharp.lower, 0.75, 1e-4);
+  // No gap beyond rounding grazes, whatever the tolerance.
+  for (const double gap : {1e-10, 1e-4}) {
+    const FirstContact sharp = first_contact(pair.query, along(gap), 0.01);
+    expect_contact(pair, along(gap), 0.01, sharp);
+    EXPECT_FALSE(sharp.grazed) << gap;
+    EXPECT_NEAR(sharp.lower, 0.75, 1e-3);
+  }
 }
 
-// Two plates thinner than any distance is certain: it may have met either.
+// A plate rests on two others, one after the other: it may have met either.
 TEST(FirstContact, GrazesFromTheFirstPlaceToTheLast) {
-  BodyPair pair(joined(box({-5, -5, 0}, {5, 5, 1e-9}), box({-5, -5, 3}, {5, 5, 3 + 1e-9})),
-                box({0, 0, 0}, {1, 1, 1e-9}));
-  const Motion motion = Motion::between(place({0, 0, 9}), place({0.1, 0, -9}));
-  const FirstContact found = first_contact(pair.query, motion, 1e-3);
+  BodyPair pair(joined(box({-5, -1, -1}, {-3, 1, 0}), box({3, -1, -1}, {5, 1, 0})),
+                box({-0.5, -0.5, 0}, {0.5, 0.5, 1}));
+  const FirstContact found =
+      first_contact(pair.query, place({-8, 0, 1e-14}), place({8, 0, 1e-14}), 1e-2);
   EXPECT_EQ(found.status, ContactStatus::kGrazing);
-  EXPECT_LE(found.lower, 1.0 / 3);
-  EXPECT_GE(found.upper, 0.5);
+  EXPECT_NEAR(found.lower, (8 - 5.5) / 16, 1e-2);
+  EXPECT_NEAR(found.upper, (8 + 5.5) / 16, 1e-2);
+}
+
+// Far more triangles are near each other than one list holds, along the whole way.
+TEST(FirstContact, ManyNearTriangles_TakeLongerLists) {
+  constexpr std::uint32_t kSquares = 120;
+  TriangleMesh sheet;
+  for (std::uint32_t i = 0; i <= kSquares; ++i) {
+    for (std::uint32_t j = 0; j <= kSquares; ++j) {
+      sheet.vertices.emplace_back(0.1 * i, 0.1 * j, 0.01 * ((i * 7 + j * 3) % 5));
+      if (i == kSquares || j == kSquares) continue;
+      const std::uint32_t at = i * (kSquares + 1) + j, next = at + kSquares + 1;
+      sheet.triangles.push_back({at, next, at + 1});
+      sheet.triangles.push_back({next, next + 1, at + 1});
+    }
+  }
+  BodyPair pair(sheet, sheet, 0);
+  const Motion closing = Motion::between(place({0.02, 0.03, 0.2}), place({0.02, 0.03, -0.2}));
+  expect_contact(pair, closing, 1e-6, first_contact(pair.query, closing, 1e-6));
+  const FirstContact along =
+      first_contact(pair.query, place({0.02, 0.03, 0.05}), place({0.52, 0.03, 0.05}), 1e-6);
+  EXPECT_EQ(along.status, ContactStatus::kNone) << to_string(along.status);
+}
+
+// A corner or an edge goes through a face without thickness between two poses in double.
+TEST(FirstContact, ThinnerThanRounding_Passes) {
+  const TriangleMesh face = triangle({-1, -1, 0.1}, {1, -1, 0.2}, {0, 1, 0.15});
+  const TriangleMesh edge = triangle({0.1, 0.2, 0}, {0.1, 0.2, 0}, {5, 0.1, 0.03});
+  BodyPair pair(face, edge, 0);
+  const Motion motion = Motion::between(place({0, 0, 3}), place({0, 0, -3}));
+  const FirstContact found = first_contact(pair.query, motion, 1e-6);
+  expect_contact(pair, motion, 1e-6, found);
+  EXPECT_FALSE(found.grazed);
+  // Beside it, nothing passes through.
+  const FirstContact beside =
+      first_contact(pair.query, place({1.2, 0, 3}), place({1.2, 0, -3}), 1e-6);
+  EXPECT_EQ(beside.status, ContactStatus::kNone);
 }
 
 TEST(FirstContact, PassesThroughNothingHoweverThin) {
@@ -209,9 +255,7 @@ TEST(FirstContact, PassesThroughNothingHoweverThin) {
     BodyPair plate(box({-5, -5, 0}, {5, 5, thick}), box({0, 0, 0}, {1, 1, thick}));
     const Motion motion = Motion::between(place({0.1, 0.2, 500}), place({0.3, -0.2, -700}));
     const FirstContact found = first_contact(plate.query, motion, 1e-3);
-    // Thinner than distances are certain to within, it is said to graze there.
-    if (thick > 1e-7) expect_contact(plate, motion, 1e-3, found);
-    EXPECT_TRUE(found.status == ContactStatus::kContact || found.status == ContactStatus::kGrazing);
+    expect_contact(plate, motion, 1e-3, found);
     EXPECT_NEAR(motion.at(found.lower).translation()[2], 0, 1e-3 + thick) << thick;
     EXPECT_NEAR(motion.at(found.upper).translation()[2], 0, 1e-3 + thick) << thick;
   }
@@ -242,6 +286,16 @@ TEST(FirstContact, AlongAScrewOfMoreThanATurn) {
   // The shortest way there, half a turn at most, goes the other way round.
   const FirstContact shortest = first_contact(pair.query, place({0, 0, 0}), motion.at(0.4), 1e-4);
   EXPECT_NE(shortest.status, ContactStatus::kContact) << "at 72 degrees it is past nothing";
+}
+
+// The middle of the rod stays. The ends alone move, and pass the post early on the way.
+TEST(FirstContact, OfARodThatTurnsAboutItsMiddle) {
+  const Vector post(5 * std::cos(0.1), 5 * std::sin(0.1), 0), half(0.01, 0.01, 1);
+  BodyPair pair(box(post - half, post + half), box({-5.2, -0.01, -0.01}, {5.2, 0.01, 0.01}), 0);
+  const Motion motion = Motion::screw(place({0, 0, 0}), {0, 0, 0}, {0, 0, 1}, 1.5, 0);
+  const FirstContact found = first_contact(pair.query, motion, 1e-6);
+  expect_contact(pair, motion, 1e-6, found);
+  EXPECT_NEAR(found.upper * 1.5, 0.1, 0.01);
 }
 
 TEST(FirstContact, IsNoLaterThanAnyOfManySamples) {

@@ -238,6 +238,14 @@ class Verbs(Jaws):
         none = self.query.first_contact(JAW_POSES[0], JAW_POSES[0], 1e-3)
         self.assertEqual((none.outcome, none.place, none.normal), ("none", None, None))
 
+    def test_triangles_that_pass_between_two_poses_meet(self):
+        face = ist.build(([[-1, -1, 0.1], [1, -1, 0.1], [0, 1, 0.1]], [[0, 1, 2]]))
+        query = ist.Query(face, ist.build(([[-0.3, -0.2, 0], [0.3, -0.2, 0], [0, 0.2, 0]], [[0, 1, 2]])))
+        found = query.first_contact(pose_of([0, 0, 1], 0, [0, 0, 3]), pose_of([0, 0, 1], 0, [0, 0, -3]), 1e-6)
+        self.assertEqual((found.outcome, found.passes, found.grazed), ("contact", True, False))
+        self.assertTrue(found.lower <= 2.9 / 6 <= found.upper)
+        self.assertFalse(self.query.first_contact(JAW_POSES[0], JAW_POSES[2], 1e-3).passes)
+
     def test_a_box_settles_on_a_plate(self):
         query = ist.Query(ist.build(box([-20, -20, -2], [20, 20, 0])), ist.build(box([-5, -5, 0], [5, 5, 10])))
         start = pose_of([1, 0, 0], 0.01, [0.5, 0.25, 0.6])

@@ -31,6 +31,7 @@ LOSSES = {
     "same spheres at 0.2 mm": ("ablation_bench", "ablation/same/fast-slab/0.2", "p50_us", 100),
     "left out at 0.2 mm": ("ablation_bench", "ablation/without/0-full/0.2", "p50_us", 100),
     "closing": ("ablation_bench", "ablation/same/fast-slab/0.2", "p50_us", 100),
+    "a thousand balls": ("peers_bench", "worlds/all_touch/ist", "first_us", 1000),
     "standings": ("peers_bench", "peers/pairs/ist", "p50_us", 1000),
     "vertices": ("peers_bench", "points/distances/ist", "p50_us", 1000),
     "workers": ("scaling_bench", "workers/2", "p50_us", 10),
@@ -45,6 +46,10 @@ LOSSES = {
     "by memory": ("hardware_bench", "hardware/0.8/", "words", 100),
     "sweeps": ("sweep_bench", "sweep/rates", "loop_in_c", 2),
 }
+
+
+def made_of(program):
+    return next(made for made in map(Results, (STORED, *MACHINES)) if made.made(program))
 
 
 def bold(name, results):
@@ -73,7 +78,7 @@ class Pages(unittest.TestCase):
     def test_each_plot_gives_lines_of_equal_length(self):
         for name, (program, function) in draw.PLOTS.items():
             self.assertIn(program, report.PROGRAMS)
-            for panel in function(Results(STORED))["panels"]:
+            for panel in function(made_of(program))["panels"]:
                 for xs, ys, _ in panel["lines"]:
                     self.assertEqual(len(list(xs)), len(list(ys)), name)
 
@@ -85,7 +90,7 @@ class Pages(unittest.TestCase):
 class Losses(unittest.TestCase):
     def test_a_loss_in_the_results_is_bold_in_its_table(self):
         for table, (program, begin, counter, times) in LOSSES.items():
-            results = next(made for made in map(Results, (STORED, *MACHINES)) if made.made(program))
+            results = made_of(program)
             before = bold(table, results)
             changed = [run for run in results._file(program)["benchmarks"] if run["name"].startswith(begin) and counter in run
                        and (not isinstance(times, str) or times in run["name"])]

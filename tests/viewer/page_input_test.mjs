@@ -459,7 +459,7 @@ test('refuses recordings of another version, and files that hold no recording', 
     ['number.jsonl', '7\n', /^number\.jsonl: .*no recording of ist run.*Record one/],
     ['null.jsonl', 'null\n', /^null\.jsonl: .*no recording of ist run.*Record one/],
     ['poor.jsonl', `${JSON.stringify({...header, recording: 3})}\n{"tick": 1}\n`, /^poor\.jsonl: Line 2 .*no tick.*Record the scene again/],
-    ['bodiless.jsonl', '{"recording": 2}\n', /^bodiless\.jsonl: .*header .*damaged.*Record the scene again/],
+    ['bodiless.jsonl', '{"recording": 3}\n', /^bodiless\.jsonl: .*header .*damaged.*Record the scene again/],
   ];
   for (const [name, text, sentence] of bad) {
     await page.getByLabel('Open a recording').setInputFiles(fileOf(name, text));

@@ -8,7 +8,7 @@ from matplotlib.collections import EllipseCollection, PolyCollection
 from pictures.drawing import NAMES, POLICIES, VOXEL_SIZE, plt, save_small_png
 from pictures.how.view import CUBE, FIXED, INK, MOVING, PALE, POLICY, SHADES, View, face_of_cube
 
-VERSION = 4  # of tree files, whose layout src/ist/tree/tree_file.cpp describes
+VERSION = 5  # of tree files, whose layout src/ist/tree/tree_file.cpp describes
 SECTIONS = 1 | 2 | 8  # balls, triangles, slabs
 # The excess of the table's balls in a query, in voxels, at level 1 and above it, by 36 times the square of the radius in half edges.
 # docs/guarantees.md, Nested bounds, derives it.

@@ -99,6 +99,7 @@ void print_first_contact_json(const FirstContact& found, const Path& path, const
                               {"displacement_lower", std::min(a, b)},
                               {"displacement_upper", std::max(a, b)},
                               {"grazed", found.grazed},
+                              {"passes", found.passes},
                               {"triangles", nullptr},
                               {"point", nullptr},
                               {"contact_fixed", nullptr},

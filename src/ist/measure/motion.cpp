@@ -117,6 +117,13 @@ Eigen::Isometry3d Motion::at(double parameter) const noexcept {
   return pose;
 }
 
+Vector Motion::velocity(const Vector& point) const noexcept {
+  const ScopedFloatEnvironment environment;
+  const Vector axis = vector(axis_);
+  const Vector turning = difference(cross_in_order(axis, point), vector(across_));
+  return sum(scaled(angle_, turning), scaled(along_, axis));
+}
+
 double Motion::longest_way(std::span<const Vector> points) const noexcept {
   const ScopedFloatEnvironment environment;
   const RigidMove first(at(0));

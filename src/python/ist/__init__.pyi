@@ -210,6 +210,7 @@ class FirstContact(NamedTuple):
     rotation_error: float
     place: Optional[Tuple[F8, F8]]
     normal: Optional[F8]
+    passes: bool
 
 class Settlement(NamedTuple):
     status: Literal["rests", "rests level", "left the box", "stopped", "no free pose", "unknown"]

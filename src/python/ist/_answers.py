@@ -142,12 +142,13 @@ class FirstContact(NamedTuple):
     triangles: Optional[Tuple[int, int]]  # fixed and moving, that intersect at `upper`, if they are known
     grazed: bool
     narrowest: float
-    distances: int  # asked for
+    distances: int  # lists of near pairs, and pairs that were measured
     self_intersecting: Optional[str]  # "fixed", "moving" or "both": that surface intersects itself
     rotation_error: float  # of the given poses, the larger one
     place: Optional[Tuple[np.ndarray, np.ndarray]]  # closest points before the contact, on the fixed and on the moving
     # surface, (3,) each, fixed mesh coordinates; twice a common point with "touches at start"; None without a contact
     normal: Optional[np.ndarray]  # (3,), unit vector from the fixed to the moving body there; 0 with "touches at start"
+    passes: bool  # the triangles pass through each other between `lower` and `upper`, and intersect at no pose that was tried
 
 
 class Settlement(NamedTuple):

@@ -102,7 +102,8 @@ def penetration(self, pose, tolerance, *, last=None, points=0, seconds=0.0, prog
 def first_contact(self, start, stop, tolerance, *, distances=0, seconds=0.0, progress=None):
     """The first contact on the way from one pose to another, by the screw that turns least, and its place and normal.
 
-    p_fixed = pose @ p_moving. From `lower` to `upper` no point of the moving body goes farther than the tolerance. distances: the most to ask for.
+    p_fixed = pose @ p_moving. From `lower` to `upper` no point of the moving body goes farther than the tolerance. distances: the most lists of near
+    pairs, and pairs to measure.
     """
     handle = self._enter()
     try:
@@ -128,6 +129,7 @@ def first_contact(self, start, stop, tolerance, *, distances=0, seconds=0.0, pro
             result.rotation_error,
             (np.array(result.place_fixed), np.array(result.place_moving)) if result.place_known else None,
             np.array(result.normal) if result.place_known else None,
+            result.passes == 1,
         )
     finally:
         self._lock.release()

@@ -394,6 +394,9 @@ TEST(World, AnswersAsEachPairsOwnQueryAlongAMotion) {
   std::vector<PlacedTree> bodies = scattered(random, 6, 3);
   bodies.push_back({triangle_tree(icosphere(4, 1), 30), shift({1, 1, 1})});
   bodies.push_back({without_triangles(triangle_tree(icosphere(2, 1), 12)), shift({2, 1, 1})});
+  for (int i = 2; i < 5; ++i) {
+    bodies.push_back({triangle_tree(icosphere(3, 1), 20), shift(2.02 * Eigen::Vector3d(i, 1, 1))});
+  }
   WorldOptions options = small_world();
   options.query.front_pairs = 4000;
   options.pair_caches = 3;
@@ -407,24 +410,30 @@ TEST(World, AnswersAsEachPairsOwnQueryAlongAMotion) {
   }
   std::vector<LeafPair> out(1 << 18), of_one(1 << 18);
   int kept = 0;
-  for (int tick = 0; tick < samples(40) && !::testing::Test::HasFailure(); ++tick) {
+  for (int tick = 0; tick < samples(400) && !::testing::Test::HasFailure(); ++tick) {
+    // A body has no pose for a few ticks, so other pairs get the pair caches of its pairs.
+    const auto away = static_cast<BodyIndex>(tick / 4) % (2 * count);
     for (BodyIndex body = 0; body < count; ++body) {
       bodies[body].pose.translation() += random.point(-0.005, 0.005);
-      world.set_pose(body, bodies[body].pose);
+      world.set_pose(body, body == away ? shift({kNan, 0, 0}) : bodies[body].pose);
     }
     for (const WorldPair& pair : world.ask(kIntersects).pairs) {
+      if (pair.status != QueryStatus::kDone) continue;
       Query& query = queries.at(pair.bodies);
       const IntersectionResult own = query.intersects(*world.pose_of(pair.bodies.a, pair.bodies.b));
       EXPECT_EQ(pair.answer, own.answer);
     }
-    for (const WorldPair& pair : world.ask(distance_within(1e-3)).pairs) {
+    const double tolerance = tick % 2 == 0 ? 1e-3 : 0.2;
+    for (const WorldPair& pair : world.ask(distance_within(tolerance)).pairs) {
+      if (pair.status != QueryStatus::kDone) continue;
       const DistanceResult own =
-          queries.at(pair.bodies).distance(*world.pose_of(pair.bodies.a, pair.bodies.b), 1e-3);
+          queries.at(pair.bodies).distance(*world.pose_of(pair.bodies.a, pair.bodies.b), tolerance);
       EXPECT_EQ(pair.complete, own.complete);
-      EXPECT_LE(pair.distance.lower, own.distance.upper);
-      EXPECT_LE(own.distance.lower, pair.distance.upper);
+      EXPECT_EQ(pair.distance.lower, own.distance.lower);
+      EXPECT_EQ(pair.distance.upper, own.distance.upper);
     }
     for (const WorldPair& pair : world.ask(leaf_pairs_in(out)).pairs) {
+      if (pair.status != QueryStatus::kDone) continue;
       const QueryResult own =
           queries.at(pair.bodies).leaf_pairs(*world.pose_of(pair.bodies.a, pair.bodies.b), of_one);
       ASSERT_EQ(pair.written, own.leaf_pairs);
@@ -435,6 +444,23 @@ TEST(World, AnswersAsEachPairsOwnQueryAlongAMotion) {
     }
   }
   EXPECT_GT(kept, least(20, 0));
+}
+
+// A plate has the depth and the voxel size of a ball, and fewer nodes.
+TEST(World, HasRoomForTheTreeWithTheMostNodes) {
+  const SphereTree plate = triangle_tree(box({-1, -1, -0.01}, {1, 1, 0.01}), 32), ball = triangle_tree(icosphere(3, 1), 32);
+  ASSERT_EQ(plate.depth(), ball.depth());
+  ASSERT_EQ(plate.voxel_size(), ball.voxel_size());
+  World world;
+  world.add(plate, shift({0, 0, 5}));
+  world.add(ball, shift({0, 0, 0}));
+  world.add(ball, shift({0.2, 0.1, 0}));
+  world.add(plate, shift({0, 0, -5}));
+  world.reserve();
+  std::vector<LeafPair> out(1 << 20), own(1 << 20);
+  const WorldAnswer answer = world.ask(leaf_pairs_in(out));
+  ASSERT_EQ(answer.pairs.size(), 1u);
+  EXPECT_EQ(answer.pairs[0].written, Query(ball, ball).leaf_pairs(shift({0.2, 0.1, 0}), own).leaf_pairs);
 }
 
 // The memory grows with the pairs that are near at a time, and not with all pairs.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "ist/base/assert.h"
 #include "ist/query/traversal/search_pose.h"
 
 namespace ist {
@@ -50,6 +51,7 @@ void Search::bind() noexcept {
     frontiers_.push_back({groups_.data() + first, moving_.data() + first, 0, 0, capacity});
     first += capacity + kFrontierSpare;
   }
+  IST_ASSERT(first <= groups_.size());
   Frontier& roots = frontiers_.front();
   roots.groups[0] = {0, 1};
   roots.moving[0] = 0;

@@ -51,7 +51,8 @@ std::size_t ClusterSearch::items_for(const TriangleClusters& fixed,
   return items;
 }
 
-void ClusterSearch::begin(const ClusterPose& pose) noexcept {
+void ClusterSearch::begin(const ClusterPose& pose, const Sweep* sweep) noexcept {
+  sweep_ = sweep;
   step_ = {pose,
            fixed_at(0),
            fixed_->clusters().data(),
@@ -64,7 +65,7 @@ bool ClusterSearch::descend_to_root(float reach, BudgetMeter& meter, int& level,
                                     LaneNodes& nodes) noexcept {
   // Above its root the moving tree has a node of one child.
   Step& top = step_at(moving_->root_level() + 1);
-  kernels_.turn_nodes(moving_->bounds(moving_->root_level())[0], step_.pose, top.turned);
+  turn(moving_->bounds(moving_->root_level())[0], top.turned);
   level = fixed_->root_level();
   nodes = {top.near, 1};
   top.near[0] = 0;

@@ -8,6 +8,7 @@
 
 #include "ist/mesh/clusters/triangle_clusters.h"
 #include "ist/query/traversal/budget_meter.h"
+#include "ist/query/triangles/swept_nodes.h"
 #include "simd/triangles/cluster_step.h"
 
 namespace ist {
@@ -49,8 +50,9 @@ class ClusterSearch {
   [[nodiscard]] static std::size_t items_for(const TriangleClusters& fixed,
                                              int moving_root_level) noexcept;
 
-  /// Sets the pose.
-  void begin(const ClusterPose& pose) noexcept;
+  /// Sets the pose. With a sweep, the moving nodes have all bounds of a part of a motion whose
+  /// middle is at the pose.
+  void begin(const ClusterPose& pose, const Sweep* sweep = nullptr) noexcept;
   /// Searches from the roots. Returns false if the budget or the visitor ended the search.
   template <class Visitor>
   bool run(BudgetMeter& meter, Visitor& visitor) noexcept;
@@ -96,6 +98,11 @@ class ClusterSearch {
   // Nodes that one call of a kernel tests: some 5 µs of work, 500 tests.
   static constexpr std::size_t kPart = 31;
 
+  // Turns the bounds of a moving node's children.
+  void turn(const NodeBlock& moving, TurnedBlock& out) const noexcept {
+    kernels_.turn_nodes(moving, step_.pose, out);
+    if (sweep_ != nullptr) sweep_->widen(out);
+  }
   [[nodiscard]] FixedNodes fixed_at(int level) const noexcept {
     return {fixed_->bounds(level).data(), fixed_->node_count(level)};
   }
@@ -125,6 +132,7 @@ class ClusterSearch {
   std::vector<std::uint32_t> items_;  // of the lists of all steps
   std::vector<Step> steps_;           // by the moving node's level; one is above the root
   ClusterStep step_{};
+  const Sweep* sweep_ = nullptr;
   bool measures_rest_ = false;
   double nearest_left_ = 0;
 };
@@ -149,7 +157,7 @@ bool ClusterSearch::descend(int moving_level, std::uint32_t moving, int fixed_le
   }
   Step& step = step_at(moving_level);
   const std::uint32_t lanes = moving_->child_count(moving_level - 1, moving);
-  kernels_.turn_nodes(moving_->bounds(moving_level - 1)[moving], step_.pose, step.turned);
+  turn(moving_->bounds(moving_level - 1)[moving], step.turned);
   LaneNodes near{};
   if (!find_near(step, lanes, fixed_level, nodes, visitor.reach(), meter, near)) return false;
   const auto go_on = [&](LaneNodes some) {

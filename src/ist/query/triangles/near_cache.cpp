@@ -27,6 +27,8 @@ constexpr double kLeastMargins = 3;
 // The most slack of a list that is filled at once, and of one that is filled in slices: in margins,
 // or in ticks of the speed.
 constexpr double kMarginsAtOnce = 1.5, kTicksAtOnce = 3, kMostMargins = 3, kMostTicks = 6;
+// A body that goes farther in a tick, in margins, gets no list: it would cost more than it saves.
+constexpr double kFastest = 1.2;
 // The part of a list's life in which the next one is filled.
 constexpr double kFilling = 1 / 1.3;
 // The part of its slack by which the centre of a list that is filled in slices lies ahead of the
@@ -225,7 +227,9 @@ void NearCache::begin(const Need& need, double slack, double ticks) noexcept {
 bool NearCache::begin_here(const Need& need) noexcept {
   const double slack = slack_of(need, kMarginsAtOnce, kTicksAtOnce);
   const bool lasts = (1 + kAhead) * slack >= kFewestAtOnce * speed_;
-  if (pause_ > 0 || !lasts || !(need.enough + slack < kLargestReach)) return false;
+  if (speed_ > kFastest * need.enough || pause_ > 0 || !lasts ||
+      !(need.enough + slack < kLargestReach))
+    return false;
   begin(need, slack, drift_ > 0 ? std::min(kAhead * slack / drift_, kWantedTicks) : 0);
   if (!holds(next(), poses_[0], need)) next().centre = poses_[0];
   return true;
@@ -261,7 +265,10 @@ bool NearCache::want(const Need& need, std::uint64_t tests) noexcept {
   const bool is_aside = kMostSlices * speed_ < kSlow * slack && spare < kCentred * slack;
   const bool lasts =
       !is_aside && holds_now && holds(kept(), ahead(slices + 2), need, slices * (speed_ - drift_));
-  if (lasts || pause_ > 0 || ticks < kFewestTicks || ticks_ < 3) return false;
+  if (lasts || speed_ > kFastest * need.enough || pause_ > 0 || ticks < kFewestTicks ||
+      ticks_ < 3) {
+    return false;
+  }
   begin(need, slack,
         slices + (drift_ > 0 ? std::min(kFarAhead * slack / drift_, kWantedTicks) : 0));
   slice_ =

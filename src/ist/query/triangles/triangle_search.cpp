@@ -8,6 +8,7 @@
 #include "ist/base/ordered_vector.h"
 #include "ist/mesh/clusters/triangle_clusters.h"
 #include "ist/query/traversal/budget_meter.h"
+#include "ist/query/triangles/swept_visitor.h"
 #include "ist/query/triangles/triangle_distance.h"
 #include "ist/tree/tree_parts.h"
 #include "simd/triangles/cluster_step.h"
@@ -389,6 +390,22 @@ TriangleSearch::Near TriangleSearch::near(const TrianglePose& pose, double enoug
   tests += meter.spent() - kRootTests;
   if (carries && complete && !budget.is_past()) prepare_near(need, tests, budget);
   return {{complete, tests}, false};
+}
+
+TriangleSearch::Swept TriangleSearch::swept(const RelativePose& middle, const ScrewPart& part,
+                                            const Budget& budget, std::size_t most,
+                                            SweptList& out) noexcept {
+  const Eigen::Isometry3d at = to_isometry(part.middle);
+  const Meshes meshes{*fixed_->triangles(), {*moving_->triangles(), at}};
+  const Sweep sweep(part, *fixed_clusters_);
+  search_.begin(cluster_pose({at, middle}), &sweep);
+  SweptPairs pairs({search_.step(), kernels_, meshes, memory_, budget}, *moving_->triangles(),
+                   *moving_clusters_, part, distance_error(part.speed * part.half + part.pad), most,
+                   out);
+  BudgetMeter meter(budget, kRootTests);
+  const bool complete = search_.run(meter, pairs);
+  const bool in_time = complete && pairs.finish();
+  return {in_time || !pairs.fits(), pairs.fits()};
 }
 
 void TriangleSearch::prepare_near(const NearCache::Need& need, std::uint64_t tests,

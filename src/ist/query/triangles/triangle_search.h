@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "ist/query/relative_pose.h"
 #include "ist/query/triangles/cluster_search.h"
@@ -11,11 +12,14 @@
 #include "ist/query/triangles/near_visitor.h"
 #include "ist/query/triangles/pair_list.h"
 #include "ist/query/triangles/shared_pairs.h"
+#include "ist/query/triangles/swept_nodes.h"
 #include "ist/query/triangles/triangle_visitors.h"
 #include "ist/tree/sphere_tree.h"
 #include "simd/dispatch.h"
 
 namespace ist {
+
+struct SweptList;
 
 struct TriangleOptions {
   int workers;                      ///< 1 or 2
@@ -110,6 +114,14 @@ class TriangleSearch {
   [[nodiscard]] double distance_error(double margin) const noexcept {
     return kTriangleDistanceError * (longest_edge_ + margin);
   }
+
+  struct Swept {
+    bool complete;  ///< the deadline did not end the search
+    bool fits;      ///< there are not too many pairs
+  };
+  /// Lists all pairs of triangles that may meet on a part of a motion: swept_pairs().
+  Swept swept(const RelativePose& middle, const ScrewPart& part, const Budget& budget,
+              std::size_t most, SweptList& out) noexcept;
 
   void forget() noexcept {
     witnesses_ = {};

@@ -103,7 +103,7 @@ typedef struct ist_motion {
 /** How a motion goes. */
 enum {
   IST_FIRST_UNKNOWN = 0, /**< after an error */
-  IST_FIRST_CONTACT = 1, /**< at `upper` triangles intersect, before `lower` none do */
+  IST_FIRST_CONTACT = 1, /**< at `upper` triangles intersect, before `lower` none do; see `passes` */
   IST_FIRST_NONE = 2,    /**< none intersect on the whole motion */
   IST_FIRST_GRAZING = 3, /**< surfaces come within the tolerance, and were not found to meet */
   IST_FIRST_TOUCHES_AT_START = 4, /**< triangles intersect at the first pose */
@@ -116,16 +116,16 @@ typedef struct ist_first_contact {
   size_t struct_size;        /**< the size of this struct, bytes */
   double lower,              /**< the motion's parameter, 0 to 1, before which none intersect */
       upper;                 /**< where the contact is at the latest; 1: none is known */
-  double distance_lower,     /**< the surfaces at `lower` are no nearer */
+  double distance_lower,     /**< the surfaces at `lower` are no nearer: 0 */
       distance_upper;        /**< and no farther apart */
   int32_t outcome;           /**< IST_FIRST_... */
   int32_t grazed;            /**< 1: surfaces grazed before: the interval may be wider */
-  int32_t triangles_known;   /**< 1: the triangles intersect at `upper` */
+  int32_t triangles_known;   /**< 1: the triangles intersect at `upper`, or pass through each other */
   uint32_t fixed,            /**< the fixed mesh's triangle, where known */
       moving;                /**< the moving mesh's */
   int32_t self_intersecting; /**< the sum of IST_..._SELF_INTERSECTING */
   double narrowest;          /**< the least tolerance that is reached here */
-  uint64_t distances;        /**< asked for */
+  uint64_t distances;        /**< lists of near pairs, and pairs that were measured */
   double rotation_error;     /**< of the given poses, the larger one: as in ist_query_result */
   double place_fixed[3],     /**< closest points before the contact, fixed mesh coordinates: of the
                                 fixed surface */
@@ -134,13 +134,14 @@ typedef struct ist_first_contact {
                           at the start, or if rounding hides each distance */
   uint32_t place_triangles[2]; /**< of the fixed and of the moving mesh, that hold the points */
   int32_t place_known;         /**< 1: the place is known; 0: there was no contact */
-  int32_t reserved;            /**< zero */
+  int32_t passes;              /**< 1: triangles pass through each other between `lower` and `upper`,
+                                  and intersect at no pose that was tried */
 } ist_first_contact;
 
 /** Finds the first contact along a motion, and its place. From `lower` to `upper` no point of the
- * moving body goes farther than `tolerance`, mesh units. Of `budget` the tests are distances. The
+ * moving body goes farther than `tolerance`, mesh units. Of `budget` the tests are `distances`. The
  * query forgets what earlier poses left. Errors: IST_TRIANGLES_MISSING, IST_POSE_INVALID,
- * IST_ARGUMENT_INVALID, IST_CANCELLED. Cost: some 10 to 40 distances for jaws that close. */
+ * IST_ARGUMENT_INVALID, IST_CANCELLED. Cost: 0.4 to 4 ms for jaws. */
 IST_C_API ist_status ist_query_first_contact(ist_query* query, const ist_motion* motion,
                                              double tolerance, const ist_budget* budget,
                                              const ist_progress* progress,
