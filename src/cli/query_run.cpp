@@ -11,10 +11,8 @@
 #include "cli/answer_words.h"
 #include "cli/contact_file.h"
 #include "cli/exit_code.h"
-#include "cli/load_bodies.h"
 #include "cli/progress_bar.h"
 #include "cli/terminal.h"
-#include "ist/base/error.h"
 #include "ist/measure/penetration.h"
 #include "ist/tree/implicit_ball.h"
 #include "verify/answer_verifier.h"
@@ -24,17 +22,6 @@ namespace ist::cli {
 using namespace answers;
 
 namespace {
-
-// Makes many depths faster. Without room for that, each takes as long as one alone.
-void prepare(const Bodies& bodies, std::size_t poses) {
-  ProgressBar progress;
-  try {
-    prepare_depth_for(poses, bodies.fixed, bodies.moving, &progress);
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::kMemoryLimit) throw;
-    print_warnings({fmt::format("depths take longer: {}", error.what())});
-  }
-}
 
 std::vector<PoseAnswer> ask(Engines& engines, Examiner& examiner,
                             const std::vector<AskedPose>& poses, int repeat,
@@ -112,7 +99,10 @@ Meeting run_queries(const Bodies& bodies, const std::vector<AskedPose>& poses,
   }
   std::optional<ContactWriter> writer;
   if (!options.contacts.empty()) writer.emplace(options.contacts, bodies);
-  prepare(bodies, poses.size());
+  {
+    ProgressBar progress;
+    prepare_depth_for(poses.size(), bodies.fixed, bodies.moving, &progress);
+  }
   const std::vector<PoseAnswer> answers = ask(engines, examiner, poses, options.repeat, writer);
   if (options.verify) verify(engines, bodies, poses);
   if (writer) writer->commit();

@@ -34,11 +34,7 @@ void prepare_depths(std::uint64_t rows, const SphereTree& fixed, const SphereTre
   progress.watch([&progress] {
     if (is_cancelled()) progress.stop();
   });
-  try {
-    prepare_depth_for(rows, fixed, moving, &progress);
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::kMemoryLimit) throw;  // depths take longer without them
-  }
+  prepare_depth_for(rows, fixed, moving, &progress);
 }
 
 // Poses that are computed, and rows that are written, at a time: a block. Threads make their

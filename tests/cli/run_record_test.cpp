@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -20,6 +21,20 @@ namespace ist::test {
 namespace {
 
 class RunRecord : public RunCase {};
+
+constexpr const char* kRest = R"(unit = "mm"
+[fixed]
+shape = "box"
+size = [20, 20, 4]
+[held]
+shape = "box"
+size = [4, 6, 4]
+translation = [0, 0, 5]
+[device]
+kind = "hand"
+plan = [{ time = 0, move = [0, 0, 0] }, { time = 0.5, move = [0, 0, -3] }, { time = 1, move = [0, 0, -3] }]
+[effects.contact]
+)";
 
 // Without the three times at its end, which differ from run to run.
 std::string without_times(const std::string& text) {
@@ -281,19 +296,7 @@ TEST_F(RunRecord, ReplayOfARunThatWasStoppedGivesTheSameBytes) {
 // A box rests on a plate, and the hand presses it: the contacts bear the hand. The report says the
 // same as the ticks.
 TEST_F(RunRecord, ContactPointsBearTheForceOnTheHand) {
-  const std::string scene = write("rest.toml", R"(unit = "mm"
-[fixed]
-shape = "box"
-size = [20, 20, 4]
-[held]
-shape = "box"
-size = [4, 6, 4]
-translation = [0, 0, 5]
-[device]
-kind = "hand"
-plan = [{ time = 0, move = [0, 0, 0] }, { time = 0.5, move = [0, 0, -3] }, { time = 1, move = [0, 0, -3] }]
-[effects.contact]
-)");
+  const std::string scene = write("rest.toml", kRest);
   const std::string file = path("ticks.jsonl");
   const CommandResult result = ist_well(run(scene, {"--unpaced", "--record", file, "--json"}));
   const nlohmann::json report = json_lines(result.out).back();
@@ -333,6 +336,81 @@ plan = [{ time = 0, move = [0, 0, 0] }, { time = 0.5, move = [0, 0, -3] }, { tim
   EXPECT_TRUE(says(said, fmt::format("contact points: {} ticks with any, at most {} at once, at "
                                      "most {:.3g} N at one; {} ticks halved",
                                      in_contact, most, largest, halved)));
+}
+
+// Each triangle of the plate is a tooth of its own, and all triangles of the box are one tooth.
+TEST_F(RunRecord, ForcesOnTeethAreSumsOverTheirTriangles) {
+  const std::string scene = write("rest.toml", kRest), file = path("ticks.jsonl");
+  std::string of_plate, of_box;
+  for (int triangle = 0; triangle < 12; ++triangle) {
+    of_plate += fmt::format("{}\n", triangle + 1);
+    of_box += "30\n";
+  }
+  const std::vector<std::string> labels{"--labels-fixed", write("plate.txt", of_plate),
+                                        "--labels-held",  write("box.txt", of_box),
+                                        "--numbering",    "universal"};
+  std::vector<std::string> more{"--unpaced", "--record", file, "--json"};
+  more.insert(more.end(), labels.begin(), labels.end());
+  const nlohmann::json report = json_lines(ist_well(run(scene, more)).out).back();
+  using Place = std::pair<int, int>;  // body and tooth
+  struct Sum {
+    int ticks = 0;
+    double sum = 0, largest = 0;
+  };
+  std::map<Place, Sum> expected;
+  for (const auto& tick : json_lines(file_content(file))) {
+    std::map<Place, Eigen::Vector3d> forces;
+    for (const auto& point : tick["points"]) {
+      const auto [x, y, z] = point["force"].get<std::array<double, 3>>();
+      const Eigen::Vector3d force(x, y, z);
+      for (const Place& place : {Place{0, point["triangles"][0].get<int>() + 1}, Place{1, 30}}) {
+        forces.try_emplace(place, Eigen::Vector3d::Zero()).first->second += force;
+      }
+    }
+    for (const auto& [place, force] : forces) {
+      Sum& sum = expected[place];
+      ++sum.ticks;
+      sum.sum += force.norm();
+      sum.largest = std::max(sum.largest, force.norm());
+    }
+  }
+  EXPECT_GE(expected.size(), 3u) << "two triangles of the plate";
+  ASSERT_EQ(report["teeth"].size(), 13u);
+  for (const auto& tooth : report["teeth"]) {
+    const bool is_held = tooth["tooth"] == 30;
+    EXPECT_EQ(tooth["body"], is_held ? "held" : "fixed");
+    const Sum sum = expected[{is_held ? 1 : 0, tooth["tooth"].get<int>()}];
+    EXPECT_EQ(tooth["ticks"], sum.ticks);
+    EXPECT_NEAR(tooth["largest_force"], sum.largest, 1e-12);
+    EXPECT_NEAR(tooth["mean_force"], sum.ticks > 0 ? sum.sum / sum.ticks : 0, 1e-12);
+  }
+
+  more = {"--unpaced"};
+  more.insert(more.end(), labels.begin(), labels.end());
+  const std::string said = ist_well(run(scene, more)).out;
+  EXPECT_TRUE(says(said, "forces on teeth, N"));
+  const Sum of_30 = expected[{1, 30}];
+  EXPECT_TRUE(says(said, fmt::format("{:>10}{:>10.3g}{:>10.3g}\n", of_30.ticks,
+                                     of_30.sum / of_30.ticks, of_30.largest)));
+}
+
+TEST_F(RunRecord, LabelsThatDoNotFitAreRefused) {
+  const std::string scene = write("rest.toml", kRest);
+  const std::string labels = write("eleven.txt", "1\n2\n3\n4\n5\n6\n7\n8\n9\n10\n11\n");
+  const auto refused = [&](const std::string& of, const std::vector<std::string>& more,
+                           const std::string& why, int code) {
+    const CommandResult result = ist(run(of, more));
+    EXPECT_EQ(result.exit_code, code) << result.err;
+    EXPECT_TRUE(says(result.err, why));
+  };
+  refused(scene, {"--labels-held", labels}, "--numbering", 2);
+  refused(scene, {"--numbering", "fdi"}, "--labels-fixed", 2);
+  refused(scene, {"--labels-held", labels, "--numbering", "fdi", "--replay", "a.jsonl"}, "--replay",
+          2);
+  refused(shipped("press"), {"--labels-held", labels, "--numbering", "fdi"}, "contact", 2);
+  refused(scene, {"--labels-held", labels, "--numbering", "universal", "--check"},
+          "11 labels for a mesh of 12 triangles", 3);
+  refused(scene, {"--labels-held", labels, "--numbering", "fdi", "--check"}, "FDI", 3);
 }
 
 TEST_F(RunRecord, DamagedRecordingsAreRefusedWithFileLineAndRemedy) {

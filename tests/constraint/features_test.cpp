@@ -200,6 +200,36 @@ std::map<Parts, double> brute_features(const FeatureBodies& bodies, const Eigen:
   return found;
 }
 
+// The middle of a fan is farther from the plate than all triangles of the fan. Its slopes are
+// within the tolerance.
+TEST(FeatureList, HasAMinimumThatNearlyTies) {
+  TriangleMesh fan;
+  constexpr std::uint32_t kRim = 8;
+  constexpr double kHeight = 0.01, kGap = 0.005;
+  fan.vertices.emplace_back(0, 0, kHeight);
+  for (std::uint32_t k = 0; k < kRim; ++k) {
+    const double at = 2 * std::numbers::pi * k / kRim;
+    fan.vertices.emplace_back(std::cos(at), std::sin(at), 0);
+    fan.triangles.push_back({0, 1 + k, 1 + (k + 1) % kRim});
+  }
+  FeatureBodies bodies(fine_box({6, 6, 1}, 21), fan);
+  const auto middle_is_listed = [&](double tolerance) {
+    std::vector<NearPair> near(1 << 12);
+    const Eigen::Isometry3d pose = shift({0.05, 0.02, 0.5 + kGap});
+    near.resize(bodies.query.near_pairs(pose, 0.03, near).near_pairs);
+    FeatureList features(bodies.fixed.surface, bodies.moving.surface, 1 << 12);
+    features.find(near, pose, 0.03, Which::kMinima, tolerance);
+    return std::any_of(
+        features.features().begin(), features.features().end(), [&](const Feature& f) {
+          return f.moving == SurfacePart{Kind::kVertex, 0} && f.fixed.kind == Kind::kFace &&
+                 std::abs(f.gap - kGap - kHeight) <= kLengthRounding;
+        });
+  };
+  EXPECT_TRUE(middle_is_listed(FeatureList::kTolerance));
+  EXPECT_TRUE(middle_is_listed(1.001 * kHeight));
+  EXPECT_FALSE(middle_is_listed(0.9 * kHeight));
+}
+
 TEST(FeatureList, HasAllFeaturesOnce) {
   Random random(2);
   std::size_t features = 0, minima = 0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "advise/voxel_advice.h"
+#include "cli/recordings/tooth_forces.h"
 #include "ist/haptics/servo_loop.h"
 #include "ist/scene.h"
 
@@ -13,9 +14,10 @@ namespace ist::cli {
 /// Prints the built and the skipped parts of a scene with reasons, one a line.
 void print_notes(const std::vector<BuildNote>& notes, bool json);
 
-/// Prints the results of a run: latencies, deadlines, and the time of each effect.
+/// Prints the results of a run: latencies, deadlines, and the time of each effect. `teeth` may be
+/// null.
 void print_report(const ServoReport& report, const Scene& scene, const Simulation& simulation,
-                  bool json);
+                  const ToothForces* teeth, bool json);
 
 /// Prints the measured sizes, one JSON object a line.
 void print_json(const VoxelAdvice& advice);

@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "answers/occlusion/labels/tooth_labels.h"
 #include "answers/refusals.h"
 #include "cli/commands/commands.h"
 #include "cli/commands/reports.h"
@@ -19,6 +20,7 @@
 #include "cli/progress_bar.h"
 #include "cli/recordings/tick_lines.h"
 #include "cli/recordings/tick_recorder.h"
+#include "cli/recordings/tooth_forces.h"
 #include "cli/terminal.h"
 #include "ist/base/counted.h"
 #include "ist/base/error.h"
@@ -33,7 +35,8 @@ using namespace answers;
 namespace {
 
 struct RunArguments {
-  std::filesystem::path scene, record, replay;
+  std::filesystem::path scene, record, replay, labels_fixed, labels_held;
+  std::string numbering;
   bool check = false, explain = false, unpaced = false, json = false;
   std::optional<double> rate, seconds;
   std::optional<int> cpu;
@@ -57,10 +60,42 @@ struct StoppableRun {
   std::optional<TickRecorder> recorder;
 };
 
-ServoReport run_loop(BuiltScene& built, const ServoOptions& servo, StoppableRun& run) {
+void check_labels(const RunArguments& options, const Scene& scene) {
+  const bool labels = !options.labels_fixed.empty() || !options.labels_held.empty();
+  refuse_if(labels && options.numbering.empty(), "--numbering",
+            "needed with labels: fdi or universal");
+  refuse_if(!labels && !options.numbering.empty(), "--numbering",
+            "goes with --labels-fixed and --labels-held");
+  refuse_if(labels && !scene.contact, "--labels-fixed, --labels-held",
+            "{}: it has no effect contact, and so no contact points", options.scene.string());
+  refuse_if(!options.labels_fixed.empty() && scene.fixed.size() > 1, "--labels-fixed",
+            "{} has {}: labels need a scene of one", options.scene.string(),
+            counted(scene.fixed.size(), "fixed body", "fixed bodies"));
+  refuse_if(!options.labels_held.empty() && scene.held.size() > 1, "--labels-held",
+            "{} has {}: labels need a scene of one", options.scene.string(),
+            counted(scene.held.size(), "held body", "held bodies"));
+}
+
+// Returns nothing if there are no labels.
+std::optional<ToothForces> teeth_of(const RunArguments& options, const BuiltScene& built) {
+  if (options.numbering.empty()) return {};
+  const ToothNumbers numbers =
+      options.numbering == "fdi" ? ToothNumbers::kFdi : ToothNumbers::kUniversal;
+  const auto labels_of = [&](const std::filesystem::path& file, const BodyTrees& body) {
+    return file.empty() ? ToothLabels() : read_labels(file, *body.contact->triangles(), numbers);
+  };
+  std::vector<ToothLabels> labels(built.trees.size());
+  labels.front() = labels_of(options.labels_fixed, built.trees.front());
+  labels.back() = labels_of(options.labels_held, built.trees.back());
+  return ToothForces(std::move(labels));
+}
+
+ServoReport run_loop(BuiltScene& built, const ServoOptions& servo, StoppableRun& run,
+                     ToothForces* teeth) {
   ProgressBar progress;
   ServoOutputs outputs;
   outputs.progress = &progress;
+  outputs.receiver = teeth;
   if (run.recorder) outputs.records = &run.recorder->ring();
   ServoReport report =
       run_servo_loop(*built.simulation, *built.device, servo, outputs, run.stop.asked());
@@ -96,8 +131,11 @@ void run(const RunArguments& options) {
   // NaN passes every range check.
   refuse_if(options.rate && std::isnan(*options.rate), "--rate", "give a number");
   refuse_if(options.seconds && std::isnan(*options.seconds), "--seconds", "give a number");
-  check_output(options.record, {options.scene, options.replay});
+  check_output(options.record,
+               {options.scene, options.replay, label_source(options.labels_fixed).file,
+                label_source(options.labels_held).file});
   Scene scene = read_scene(options.scene);
+  check_labels(options, scene);
   for (const auto* bodies : {&scene.fixed, &scene.held}) {
     for (const SceneBody& body : *bodies) {
       const auto* file = std::get_if<std::filesystem::path>(&body.source);
@@ -122,6 +160,7 @@ void run(const RunArguments& options) {
     begin_json();
     return print_notes(built.notes, options.json);
   }
+  std::optional<ToothForces> teeth = teeth_of(options, built);
   if (options.check) return;
   if (!options.replay.empty()) return replay_ticks(built, scene, options);
 
@@ -130,9 +169,9 @@ void run(const RunArguments& options) {
   servo.paced = !options.unpaced;
   servo.real_time.cpu = options.cpu;
   StoppableRun stoppable(options.record, scene, *built.simulation);
-  const ServoReport report = run_loop(built, servo, stoppable);
+  const ServoReport report = run_loop(built, servo, stoppable, teeth ? &*teeth : nullptr);
   begin_json();
-  print_report(report, scene, *built.simulation, options.json);
+  print_report(report, scene, *built.simulation, teeth ? &*teeth : nullptr, options.json);
   flush_stdout();  // while a signal still cannot end the process amid the report
   if (report.lost_records > 0) {
     throw std::runtime_error(
@@ -181,6 +220,15 @@ void add_run(CLI::App& app) {
   auto* replay = add_file(*command, "--replay", options->replay,
                           "replay the ticks of a JSON recording of this scene: the same "
                           "numbers except for times");
+  auto* labels_fixed = add_file(
+      *command, "--labels-fixed", options->labels_fixed,
+      "the fixed body's tooth numbers, as `ist occlusion` reads them; the report then has the "
+      "forces on each tooth");
+  auto* labels_held =
+      add_file(*command, "--labels-held", options->labels_held, "the held body's tooth numbers");
+  auto* numbering =
+      command->add_option("--numbering", options->numbering, "the system of the labels")
+          ->transform(one_of({"fdi", "universal"}));
   auto* cpu =
       command->add_option("--cpu", options->cpu, "the processor for the loop alone, counted from 0")
           ->check(CLI::NonNegativeNumber);
@@ -190,6 +238,8 @@ void add_run(CLI::App& app) {
       no_run->excludes(of_a_run);
     }
   }
+  // A replay has no report.
+  for (CLI::Option* of_labels : {labels_fixed, labels_held, numbering}) replay->excludes(of_labels);
   for (CLI::Option* of_the_clock : {allow_missed, cpu}) of_the_clock->excludes(unpaced);
   for (CLI::Option* of_a_loop : {seconds, allow_missed, unpaced, cpu}) replay->excludes(of_a_loop);
   add_max_memory(*command, options->max_memory, "each tree, and for all queries together");

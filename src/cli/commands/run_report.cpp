@@ -25,6 +25,29 @@ nlohmann::ordered_json as_json(const LatencyHistogram& times) {
   return json;
 }
 
+nlohmann::ordered_json as_json(const ToothForces& teeth, const Simulation& simulation) {
+  auto json = nlohmann::ordered_json::array();
+  for (const ToothForces::Tooth& tooth : teeth.teeth()) {
+    json.push_back({{"body", std::string(simulation.body_name(tooth.body))},
+                    {"tooth", tooth.number},
+                    {"ticks", tooth.ticks},
+                    {"mean_force", tooth.mean()},
+                    {"largest_force", tooth.largest}});
+  }
+  return json;
+}
+
+// Prints the teeth that were touched.
+void print_teeth(const ToothForces& teeth, const Simulation& simulation) {
+  fmt::print("\n{:<20}{:>8}{:>10}{:>10}{:>10}\n", "forces on teeth, N", "tooth", "ticks", "mean",
+             "largest");
+  for (const ToothForces::Tooth& tooth : teeth.teeth()) {
+    if (tooth.ticks == 0) continue;
+    fmt::print("{:<20}{:>8}{:>10}{:>10.3g}{:>10.3g}\n", simulation.body_name(tooth.body),
+               tooth.number, tooth.ticks, tooth.mean(), tooth.largest);
+  }
+}
+
 void print_row(const char* name, const LatencyHistogram& times) {
   fmt::print("{:<12}", name);
   for (const auto& [label, part] : kQuantiles) {
@@ -76,7 +99,7 @@ void print_notes(const std::vector<BuildNote>& notes, bool json) {
 }
 
 void print_report(const ServoReport& report, const Scene& scene, const Simulation& simulation,
-                  bool json) {
+                  const ToothForces* teeth, bool json) {
   const double ticks = static_cast<double>(std::max<std::uint64_t>(report.ticks, 1));
   if (json) {
     nlohmann::ordered_json line{{"ticks", report.ticks},
@@ -108,6 +131,7 @@ void print_report(const ServoReport& report, const Scene& scene, const Simulatio
            {change.attach ? "attach" : "release", std::string(simulation.body_name(change.body))},
            {"status", to_string(change.status)}});
     }
+    if (teeth != nullptr) line["teeth"] = as_json(*teeth, simulation);
     print_json(line);
     return;
   }
@@ -129,6 +153,7 @@ void print_report(const ServoReport& report, const Scene& scene, const Simulatio
     fmt::print("{:.4g} s: {} {}: {}\n", change.time, change.attach ? "attach" : "release",
                simulation.body_name(change.body), to_string(change.status));
   }
+  if (teeth != nullptr) print_teeth(*teeth, simulation);
   fmt::print("\n");
   fmt::print("{:<12}", "µs");
   for (const auto& [name, part] : kQuantiles) fmt::print("{:>10}", name);

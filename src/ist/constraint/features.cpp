@@ -1,8 +1,10 @@
 #include "ist/constraint/features.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "ist/base/float_environment.h"
 #include "ist/base/ordered_vector.h"
 #include "ist/base/rigid_move.h"
 #include "ist/mesh/bounding_box.h"
@@ -15,6 +17,8 @@ namespace {
 
 // A corner is above a seam inside a plane region if its normal ascends by no more, a sine.
 constexpr double kSeam = 1e-6;
+// The reach of a pair's minima: a factor for the tolerance, and a part of the edges for rounding.
+constexpr double kSpare = 1.001, kRounding = 2e-6;
 // Cells along the diagonal of the moving body, if a list is thinned.
 constexpr double kCells = 64;
 
@@ -22,6 +26,20 @@ std::uint64_t mixed(std::uint64_t x) noexcept {
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9;
   x = (x ^ (x >> 27)) * 0x94D049BB133111EB;
   return x ^ (x >> 31);
+}
+
+// NearPair::direction() in the caller's float environment.
+Eigen::Vector3d direction_of(const NearPair& pair) noexcept {
+  const Eigen::Vector3d way = difference(pair.moving_point, pair.fixed_point);
+  const double length = length_in_order(way);
+  return pair.distance > 0 && length > 0 ? scaled(1 / length, way) : Eigen::Vector3d(0, 0, 0);
+}
+
+double longest_edge(const TriangleCorners& t) noexcept {
+  const double a = square_in_order(difference(t[1], t[0]));
+  const double b = square_in_order(difference(t[2], t[1]));
+  const double c = square_in_order(difference(t[0], t[2]));
+  return std::sqrt(std::max({a, b, c}));
 }
 
 std::uint64_t number_of(const SurfacePart& part) noexcept {
@@ -68,6 +86,7 @@ void FeatureList::clear() noexcept {
 
 void FeatureList::find(std::span<const NearPair> near, const Eigen::Isometry3d& pose, double margin,
                        Which which, double tolerance) noexcept {
+  const ScopedFloatEnvironment environment;
   clear();
   tolerance_ = tolerance;
   const bool minima = which == Which::kMinima;
@@ -85,18 +104,25 @@ bool FeatureList::list(std::span<const NearPair> near, const Eigen::Isometry3d& 
     if (minima) {
       // The closest points of two triangles are a minimum of the surfaces, or no part of these
       // triangles has one.
-      const Eigen::Vector3d normal = pair.direction();
+      const Eigen::Vector3d normal = direction_of(pair);
       const Eigen::Vector3d back = -(pose.linear().transpose() * normal);
       if (!fixed_.leaves(fixed_.part(fixed, pair.fixed_part), normal, tolerance_) ||
           !moving_.leaves(moving_.part(moving, pair.moving_part), back, tolerance_)) {
         continue;
       }
     }
+    const TriangleCorners first = corners_of(fixed_.mesh(), fixed);
     TriangleCorners second = corners_of(moving_.mesh(), moving);
     for (Eigen::Vector3d& corner : second) corner = move(corner);
+    double reach = margin;
+    if (minima) {
+      // At a minimum no point of the triangles is nearer by more than their slopes along its
+      // normal.
+      const double edges = longest_edge(first) + longest_edge(second);
+      reach = std::min(reach, pair.distance + (kSpare * tolerance_ + kRounding) * edges);
+    }
     std::array<NearPair, Query::kMostNearParts> parts;
-    const std::size_t count =
-        near_parts(corners_of(fixed_.mesh(), fixed), second, pair.triangles, margin, parts);
+    const std::size_t count = near_parts(first, second, pair.triangles, reach, parts);
     for (const NearPair& part : std::span(parts).first(count)) {
       const SurfacePart of_fixed = fixed_.part(fixed, part.fixed_part);
       const SurfacePart of_moving = moving_.part(moving, part.moving_part);
@@ -117,7 +143,7 @@ bool FeatureList::add(const NearPair& near, const SurfacePart& fixed, const Surf
   }
   if (seen_.is_full()) return false;
   if (!seen_.add({number_of(fixed), number_of(moving)})) return true;
-  const Eigen::Vector3d normal = near.direction();
+  const Eigen::Vector3d normal = direction_of(near);
   if (!(square_in_order(normal) > 0)) return true;
   if (minima) {
     const Eigen::Vector3d back = -(pose.linear().transpose() * normal);

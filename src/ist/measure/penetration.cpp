@@ -50,7 +50,7 @@ double largest_way(const Eigen::AlignedBox3d& box, const RigidMove& from, const 
 constexpr double kLongestWay = 16;
 // A search without outer balls takes as long as the balls of so many triangles. Fewer depths than
 // kFewDepths never pay for balls.
-constexpr std::uint64_t kTrianglesOfADepth = 800, kFewDepths = 100;
+constexpr std::uint64_t kBallBytesOfATriangle = 28, kTrianglesOfADepth = 800, kFewDepths = 100;
 
 }  // namespace
 
@@ -148,7 +148,9 @@ bool prepare_depth_for(std::uint64_t depths, const SphereTree& fixed, const Sphe
   for (const SphereTree* tree : {&fixed, &moving}) {
     const bool closed = tree->orientation() == Orientation::kOutward;
     if (tree->triangles() == nullptr || !closed) return false;
-    triangles += is_prepared_for_depth(*tree) ? 0 : tree->triangles()->triangles.size();
+    const std::uint64_t count = tree->triangles()->triangles.size();
+    if (count > kMostBallBytes / kBallBytesOfATriangle) return false;
+    triangles += is_prepared_for_depth(*tree) ? 0 : count;
   }
   if (triangles > 0 && depths < std::max(kFewDepths, triangles / kTrianglesOfADepth)) return false;
   for (const SphereTree* tree : {&fixed, &moving}) prepare_depth(*tree, kMostBallBytes, progress);

@@ -52,12 +52,13 @@ struct QueryOptions {
   /// bit by bit, but for `sphere_tests`, `distance` and `found`. With a budget of tests every query
   /// searches. A query that a stream or a deadline ended makes nothing for the next one.
   std::size_t front_pairs = 0;
-  /// The most near pairs to keep from one pose to the next, 336 bytes each, and the memory of one
+  /// The most near pairs to keep from one pose to the next, 390 bytes each, and the memory of one
   /// more search of triangles. 0: none are kept, and every near_pairs() searches.
   ///
   /// For a body that moves by less than some half of the margin from query to query. The answers
   /// are the same, bit by bit, but for `sphere_tests` and `found`. With a budget of tests every
-  /// query searches. Twice the pairs that are near is room enough, and 2,048 is a good number.
+  /// query searches. 2,048 is a good number, or three times the pairs that are near if these are
+  /// more.
   std::size_t near_pairs = 0;
 };
 

@@ -109,6 +109,7 @@ class Loop {
     report_.cpu.record(nanoseconds(record.cpu_ns));
     if (outputs_.records != nullptr) push(record);
     if (outputs_.snapshot != nullptr) outputs_.snapshot->publish(record);
+    if (outputs_.receiver != nullptr) outputs_.receiver->take(record);
     if (outputs_.progress != nullptr) outputs_.progress->add(1);
   }
 

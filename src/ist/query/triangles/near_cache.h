@@ -15,8 +15,10 @@ namespace ist {
 
 /// Carries near pairs from one pose to the next. A list holds all pairs within a reach at its
 /// centre. While the moving body stays within the list's slack of that centre, no other pair can be
-/// near, so only the listed pairs are measured again. The next list is filled in slices, before the
-/// last one is used up, for a centre ahead of the body. A tick pays for a slice.
+/// near, so only the listed pairs are measured again. A pair that was measured and is not near gets
+/// a plane between its triangles. It is not measured again while the plane has room enough. The
+/// next list is filled in slices, before the last one is used up, for a centre ahead of the body. A
+/// tick pays for a slice.
 ///
 ///              want            advance            find
 ///     kEmpty ---------> kFilling -------> kReady ----------> kKept
@@ -28,7 +30,7 @@ namespace ist {
 /// way. The answer is that of a fresh search, bit by bit.
 class NearCache {
  public:
-  /// Reserves all memory: two lists of so many pairs, 168 bytes each, and a ClusterWalk.
+  /// Reserves all memory: two lists of so many pairs, 195 bytes each, and a ClusterWalk.
   NearCache(const TriangleMesh& fixed, const TriangleMesh& moving,
             const TriangleClusters& fixed_clusters, const TriangleClusters& moving_clusters,
             const ClusterKernels& kernels, std::size_t pairs);
@@ -62,11 +64,16 @@ class NearCache {
   template <class PoseOf>
   [[nodiscard]] bool fill(const Need& need, const Budget& budget, FoundMemory& memory,
                           std::uint64_t& tests, PoseOf pose_of) noexcept {
-    if (!begin_here(need)) return false;
-    const ClusterPose pose = pose_of(to_isometry(next().centre));
-    walk_.begin(pose, rounded_up(next().reach + double{pose.error}));
+    // A list that is filled in slices goes on.
+    const bool goes_on = next().state == State::kFilling && holds(next(), poses_[0], need);
+    const std::uint64_t before = goes_on ? walk_.tests() : 0;
+    if (!goes_on) {
+      if (!begin_here(need)) return false;
+      const ClusterPose pose = pose_of(to_isometry(next().centre));
+      walk_.begin(pose, rounded_up(next().reach + double{pose.error}));
+    }
     advance(std::numeric_limits<std::uint64_t>::max(), budget, memory);
-    tests += walk_.tests();
+    tests += walk_.tests() - before;
     if (next().state != State::kReady) {
       next().state = State::kEmpty;
       return false;
@@ -88,6 +95,9 @@ class NearCache {
     TriangleOctet corners;
     TriangleIds ids[TriangleOctet::kSize];
     double distance[TriangleOctet::kSize];  // lower bounds at the centre
+    // Planes between the triangles: their normals, and how high the fixed triangles reach. 0 before
+    // a pair was measured and left out.
+    double normal[3][TriangleOctet::kSize], top[TriangleOctet::kSize];
     double least;
     std::size_t count;
   };
@@ -114,12 +124,15 @@ class NearCache {
                            double spare = 0) const noexcept;
   [[nodiscard]] RelativePose ahead(double ticks) const noexcept;
   [[nodiscard]] bool want(const Need& need, std::uint64_t tests) noexcept;
-  [[nodiscard]] double ticks_left(const Need& need, double most) const noexcept;
-  [[nodiscard]] double slack_of(const Need& need) const noexcept;
+  [[nodiscard]] double slack_of(const Need& need, double margins, double ticks) const noexcept;
   void begin(const Need& need, double slack, double ticks) noexcept;
   [[nodiscard]] bool begin_here(const Need& need) noexcept;
   void use_next(const Need& need) noexcept;
   void advance(std::uint64_t most, const Budget& budget, FoundMemory& memory) noexcept;
+  // Returns, as bits, the lanes whose planes have more room than `least` between the triangles.
+  [[nodiscard]] static std::uint32_t parted(const Block& block, const PlainMove& move,
+                                            double least) noexcept;
+  static void set_plane(Block& block, std::size_t lane, const NearPair& closest) noexcept;
   [[nodiscard]] bool take(FoundTriangles& found) noexcept;
   [[nodiscard]] bool add(TriangleIds ids, double distance) noexcept;
   void set_width() noexcept;
@@ -138,7 +151,6 @@ class NearCache {
   double motion_ = 0, error_ = 0;  // since the centre of the list that find() found
   double width_ = 1;              // of the next list: a factor of the slack that the speed asks for
   std::uint64_t list_tests_ = 0;  // of the last list
-  double slices_ = 0;             // of the next list, each of slice_ tests
   std::uint64_t slice_ = 0, pause_ = 0;
 };
 

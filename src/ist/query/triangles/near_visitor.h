@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <tuple>
 
 #include "ist/base/float_rounding.h"
 #include "ist/query/results.h"
@@ -44,9 +43,12 @@ class NearList {
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
 
  private:
-  static bool before(const NearPair& a, const NearPair& b) noexcept {
-    return std::tie(a.distance, a.triangles) < std::tie(b.distance, b.triangles);
-  }
+  struct Before {
+    bool operator()(const NearPair& a, const NearPair& b) const noexcept {
+      return a.distance < b.distance || (a.distance == b.distance && a.triangles < b.triangles);
+    }
+  };
+  static constexpr Before before{};
 
   std::span<NearPair> out_;
   std::uint64_t count_ = 0;
@@ -74,21 +76,34 @@ class NearDecision {
 
   [[nodiscard]] double enough() const noexcept { return enough_; }
   [[nodiscard]] const VisitorContext& context() const noexcept { return context_; }
+  [[nodiscard]] const PlainMove& move() const noexcept { return move_; }
 
   /// Takes up to eight pairs whose corners an octet has. Bit k of `apart` says that pair k surely
-  /// does not intersect.
-  void take(const TriangleOctet& octet, std::span<const TriangleIds> ids,
-            std::uint32_t apart) noexcept {
+  /// does not intersect. Calls `leave_out(lane, closest)` for each
+  /// pair that is farther apart; closest() returns it.
+  template <class LeaveOut>
+  void take(const TriangleOctet& octet, std::span<const TriangleIds> ids, std::uint32_t apart,
+            LeaveOut leave_out) noexcept {
     OctetDistances distances;
     context_.kernels.closest_octet(octet, move_, distances);
     for (std::size_t lane = 0; lane < ids.size(); ++lane) {
       const bool parted = (apart >> lane & 1U) != 0;
-      if (parted && std::sqrt(distances.square[lane]) > enough_) continue;
-      const NearPair pair = closest_points(corners_of(context_.meshes.fixed, ids[lane].fixed),
-                                           context_.meshes.moving[ids[lane].moving],
-                                           {ids[lane].fixed, ids[lane].moving},
-                                           static_cast<std::size_t>(distances.parts[lane]));
-      if (pair.distance <= enough_) list_.add(pair);
+      const auto closest = [&] {
+        return closest_points(corners_of(context_.meshes.fixed, ids[lane].fixed),
+                              context_.meshes.moving[ids[lane].moving],
+                              {ids[lane].fixed, ids[lane].moving},
+                              static_cast<std::size_t>(distances.parts[lane]));
+      };
+      if (parted && std::sqrt(distances.square[lane]) > enough_) {
+        leave_out(lane, closest);
+        continue;
+      }
+      const NearPair pair = closest();
+      if (pair.distance <= enough_) {
+        list_.add(pair);
+      } else {
+        leave_out(lane, [&] { return pair; });
+      }
     }
   }
   /// Takes pairs by their indices. `squares` are lower bounds of the squares of their distances.
@@ -107,7 +122,7 @@ class NearDecision {
         set_lane(octet.fixed, lane, context_.meshes.fixed, ids[lane].fixed);
         set_lane(octet.moving, lane, moving_, ids[lane].moving);
       }
-      take(octet, {ids, count}, apart);
+      take(octet, {ids, count}, apart, [](std::size_t, const auto&) {});
     }
     return true;
   }

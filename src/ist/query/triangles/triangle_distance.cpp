@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "ist/base/float_environment.h"
 #include "ist/base/ordered_vector.h"
@@ -40,43 +41,92 @@ NearPair near_pair(TrianglePair triangles, double square, const PartPoint& a, co
   return {triangles, std::sqrt(square), vector(a.point), vector(b.point), a.part, b.part};
 }
 
-// Returns the points of ClosestParts.
+// Tries ClosestParts.
+ClosestTry try_parts(const ClosestSide& a, const ClosestSide& b, std::size_t parts) {
+  using Parts = ClosestParts;
+  if (parts < Parts::kFaceToCorner) return try_face(a.corner[parts], b);
+  if (parts < Parts::kEdges) return try_face(b.corner[parts - Parts::kFaceToCorner], a);
+  const std::size_t i = (parts - Parts::kEdges) % 9 / 3, j = (parts - Parts::kEdges) % 3;
+  if (parts < Parts::kCornerToEdge) return try_edges(a, i, b, j);
+  if (parts < Parts::kEdgeToCorner) return try_edge(a.corner[i], b, j);
+  return try_edge(b.corner[j], a, i);
+}
+
+// Returns the smallest part that holds the point of edge k behind `by` of it.
+TrianglePart part_at(std::size_t k, double by) {
+  return by == 0 ? corner_part(k) : by == 1 ? corner_part(k + 1) : edge_part(k);
+}
+
+// Returns the smallest parts that hold the points of a try of ClosestParts.
+std::pair<TrianglePart, TrianglePart> parts_at(std::size_t parts, const ClosestTry& tried) {
+  using Parts = ClosestParts;
+  if (parts < Parts::kFaceToCorner) return {corner_part(parts), TrianglePart::kFace};
+  if (parts < Parts::kEdges)
+    return {TrianglePart::kFace, corner_part(parts - Parts::kFaceToCorner)};
+  const std::size_t i = (parts - Parts::kEdges) % 9 / 3, j = (parts - Parts::kEdges) % 3;
+  if (parts < Parts::kCornerToEdge) return {part_at(i, tried.first), part_at(j, tried.second)};
+  if (parts < Parts::kEdgeToCorner) return {corner_part(i), part_at(j, tried.first)};
+  return {part_at(i, tried.first), corner_part(j)};
+}
+
+// Returns the points of a try of ClosestParts.
 NearPair points_of(const ClosestSide& a, const ClosestSide& b, TrianglePair triangles,
-                   std::size_t parts) {
+                   std::size_t parts, const ClosestTry& tried) {
   using Parts = ClosestParts;
   if (parts < Parts::kFaceToCorner) {
-    const ClosestTry tried = try_face(a.corner[parts], b);
     return near_pair(triangles, tried.square, corner_point(a, parts),
                      {along(a.corner[parts], tried.first, b.normal), TrianglePart::kFace});
   }
   if (parts < Parts::kEdges) {
     const std::size_t k = parts - Parts::kFaceToCorner;
-    const ClosestTry tried = try_face(b.corner[k], a);
     return near_pair(triangles, tried.square,
                      {along(b.corner[k], tried.first, a.normal), TrianglePart::kFace},
                      corner_point(b, k));
   }
   const std::size_t i = (parts - Parts::kEdges) % 9 / 3, j = (parts - Parts::kEdges) % 3;
   if (parts < Parts::kCornerToEdge) {
-    const ClosestTry tried = try_edges(a, i, b, j);
     return near_pair(triangles, tried.square, edge_point(a, i, tried.first),
                      edge_point(b, j, tried.second));
   }
   if (parts < Parts::kEdgeToCorner) {
-    const ClosestTry tried = try_edge(a.corner[i], b, j);
     return near_pair(triangles, tried.square, corner_point(a, i), edge_point(b, j, tried.first));
   }
-  const ClosestTry tried = try_edge(b.corner[j], a, i);
   return near_pair(triangles, tried.square, edge_point(a, i, tried.first), corner_point(b, j));
 }
 
-// The corners and edges of a triangle that are no farther from the plane of a face than `enough`,
-// with room for rounding. The others have no near part.
+// Returns the points of ClosestParts.
+NearPair points_of(const ClosestSide& a, const ClosestSide& b, TrianglePair triangles,
+                   std::size_t parts) {
+  return points_of(a, b, triangles, parts, try_parts(a, b, parts));
+}
+
+// An axis-aligned box of some points.
+struct PlainBox {
+  ClosestPoint low, high;
+
+  explicit PlainBox(const ClosestPoint& p) : low(p), high(p) {}
+  PlainBox(const ClosestPoint& p, const ClosestPoint& q) : PlainBox(p) { add(q); }
+  void add(const ClosestPoint& p) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], p[i]);
+      high[i] = std::max(high[i], p[i]);
+    }
+  }
+  // Returns whether another box may be within a distance.
+  [[nodiscard]] bool is_near(const PlainBox& other, double distance) const {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (other.low[i] - high[i] > distance || low[i] - other.high[i] > distance) return false;
+    }
+    return true;
+  }
+};
+
+// The corners and edges of a triangle that are no farther from another one's plane and box than
+// `enough`, with room for rounding. The others have no near part.
 struct NearSides {
   bool corner[3], edge[3];
 
   NearSides(const ClosestSide& t, const ClosestSide& face, double enough) {
-    constexpr double kRounding = 1 + 0x1p-20;
     double height[3];
     const double most = (kRounding * enough) * std::sqrt(face.area);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -87,7 +137,17 @@ struct NearSides {
       const double a = height[k], b = height[(k + 1) % 3];
       edge[k] = !face.flat || !((a > most && b > most) || (a < -most && b < -most));
     }
+    PlainBox box(face.corner[0], face.corner[1]);
+    box.add(face.corner[2]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      corner[k] = corner[k] && box.is_near(PlainBox(t.corner[k]), kRounding * enough);
+      edge[k] = edge[k] && box.is_near(box_of_edge(t, k), kRounding * enough);
+    }
   }
+  static PlainBox box_of_edge(const ClosestSide& t, std::size_t k) {
+    return {t.corner[k], t.corner[(k + 1) % 3]};
+  }
+  static constexpr double kRounding = 1 + 0x1p-20;
 };
 
 // A point in which an edge meets a plane, and how deep it lies in the triangle of that plane, as a
@@ -173,54 +233,56 @@ std::size_t near_parts(const TriangleCorners& a, const TriangleCorners& b, Trian
   const ClosestTriangle first = plain(a), second = plain(b);
   const ClosestSide of_a(first), of_b(second);
   std::size_t count = 0;
-  const auto add = [&](std::size_t parts) {
-    const NearPair pair = points_of(of_a, of_b, triangles, parts);
-    if (!(pair.distance <= enough)) return;
-    const auto end = out.begin() + static_cast<std::ptrdiff_t>(count);
+  const auto add = [&](std::size_t parts, const ClosestTry& tried) {
+    if (!(tried.square < HUGE_VAL && std::sqrt(tried.square) <= enough)) return;
+    const auto [fixed, moving] = parts_at(parts, tried);
     // Corners are found by several edges, with roundings of their own.
-    const auto same = std::find_if(out.begin(), end, [&](const NearPair& other) {
-      return other.fixed_part == pair.fixed_part && other.moving_part == pair.moving_part;
-    });
-    if (same != end && !(pair.distance < same->distance)) return;
-    if (same == end) ++count;
-    auto at = same;  // the pair goes there, or before
-    for (; at != out.begin() && pair.distance < (at - 1)->distance; --at) *at = *(at - 1);
-    *at = pair;
+    std::size_t at = 0;
+    while (at < count && !(out[at].fixed_part == fixed && out[at].moving_part == moving)) ++at;
+    const double distance = std::sqrt(tried.square);
+    if (at == count) {
+      ++count;
+    } else if (!(distance < out[at].distance)) {
+      return;
+    }
+    // The pair goes there, or before.
+    for (; at > 0 && distance < out[at - 1].distance; --at) out[at] = out[at - 1];
+    out[at] = points_of(of_a, of_b, triangles, parts, tried);
   };
   const NearSides near_a(of_a, of_b, enough), near_b(of_b, of_a, enough);
-  double to_edge[3][3], to_corner[3][3];  // squares, from corner i and from edge i of the first
+  constexpr ClosestTry kNone{HUGE_VAL, 0, 0};
+  ClosestTry to_edge[3][3], to_corner[3][3];  // from corner i and from edge i of the first
   for (std::size_t i = 0; i < 3; ++i) {
-    if (near_a.corner[i] && try_face(of_a.corner[i], of_b).square < HUGE_VAL) {
-      add(Parts::kCornerToFace + i);
-    }
+    if (near_a.corner[i]) add(Parts::kCornerToFace + i, try_face(of_a.corner[i], of_b));
     for (std::size_t j = 0; j < 3; ++j) {
-      to_edge[i][j] = near_a.corner[i] ? try_edge(of_a.corner[i], of_b, j).square : HUGE_VAL;
-      to_corner[i][j] = near_b.corner[j] ? try_edge(of_b.corner[j], of_a, i).square : HUGE_VAL;
+      to_edge[i][j] = near_a.corner[i] ? try_edge(of_a.corner[i], of_b, j) : kNone;
+      to_corner[i][j] = near_b.corner[j] ? try_edge(of_b.corner[j], of_a, i) : kNone;
     }
   }
   for (std::size_t j = 0; j < 3; ++j) {
-    if (near_b.corner[j] && try_face(of_b.corner[j], of_a).square < HUGE_VAL) {
-      add(Parts::kFaceToCorner + j);
-    }
+    if (near_b.corner[j]) add(Parts::kFaceToCorner + j, try_face(of_b.corner[j], of_a));
   }
   for (std::size_t i = 0; i < 3; ++i) {
     if (!near_a.edge[i]) continue;
     for (std::size_t j = 0; j < 3; ++j) {
-      if (!near_b.edge[j]) continue;
+      if (!near_b.edge[j] || !NearSides::box_of_edge(of_a, i).is_near(
+                                 NearSides::box_of_edge(of_b, j), NearSides::kRounding * enough)) {
+        continue;
+      }
       // The closest points of two edges lie inside both, or at an end of one.
       const std::size_t next_i = (i + 1) % 3, next_j = (j + 1) % 3;
       std::size_t best = Parts::kEdges + 3 * i + j;
-      double square = try_edges(of_a, i, of_b, j).square;
-      const auto take = [&](std::size_t parts, double tried) {
-        if (!(tried < square)) return;
-        square = tried;
+      ClosestTry nearest = try_edges(of_a, i, of_b, j);
+      const auto take = [&](std::size_t parts, const ClosestTry& tried) {
+        if (!(tried.square < nearest.square)) return;
+        nearest = tried;
         best = parts;
       };
       take(Parts::kCornerToEdge + 3 * i + j, to_edge[i][j]);
       take(Parts::kCornerToEdge + 3 * next_i + j, to_edge[next_i][j]);
       take(Parts::kEdgeToCorner + 3 * i + j, to_corner[i][j]);
       take(Parts::kEdgeToCorner + 3 * i + next_j, to_corner[i][next_j]);
-      if (square < HUGE_VAL) add(best);
+      add(best, nearest);
     }
   }
   return count;

@@ -245,7 +245,7 @@ typedef struct ist_query_options {
                               default 0: where surfaces meet, to within 0.25 with slabs */
   uint64_t front_pairs;    /**< most leaf pairs kept in slow motion, 224 bytes each, to 2^26;
                               0: none */
-  uint64_t near_pairs;     /**< most near pairs of triangles kept in slow motion, 336 bytes each, to
+  uint64_t near_pairs;     /**< most near pairs of triangles kept in slow motion, 390 bytes each, to
                               2^26; 0: none. 2,048 is a good number */
 } ist_query_options;
 

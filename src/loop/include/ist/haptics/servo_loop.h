@@ -35,11 +35,20 @@ struct ServoOptions {
   RealTimeOptions real_time = {};  ///< of a paced loop
 };
 
+/// Takes the ticks of a loop in the loop's thread, between ticks.
+class TickReceiver {
+ public:
+  virtual ~TickReceiver() = default;
+  /// Takes a tick. Must neither allocate nor wait.
+  virtual void take(const TickRecord& record) noexcept = 0;
+};
+
 /// The receivers of ticks; each may be null.
 struct ServoOutputs {
   /// Every tick. If the ring is full, a paced loop drops the record; an unpaced one waits.
   TickRing<TickRecord>* records = nullptr;
   Snapshot<TickRecord>* snapshot = nullptr;  ///< the last tick
+  TickReceiver* receiver = nullptr;          ///< every tick
   Progress* progress = nullptr;              ///< ticks done, of ServoOptions::ticks
 };
 
