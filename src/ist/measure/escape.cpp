@@ -94,7 +94,7 @@ class EscapeSearch {
     if (!(found_.lower <= longest_)) return end(EscapeStatus::kNotFound, kNone);
     find_lines(depth.of_moving ? depth.direction : scaled(-1, depth.direction));
     shorten_lines();
-    if (best_ <= longest_) return end(EscapeStatus::kFound, best_);
+    if (best_ < kNone && best_ <= longest_) return end(EscapeStatus::kFound, best_);
     keep(pose_);
     return free_.is_ended() ? end_early() : end(EscapeStatus::kNotFound, kNone);
   }
