@@ -61,9 +61,13 @@ double length_of(const SphereTree& moving, const Pose& from, const Pose& to) {
   return std::sqrt(most) * (1 + 0x1p-48) + rounding_at(moving, from) + rounding_at(moving, to);
 }
 
-// The motion from one pose to another, in fixed coordinates.
+// The motion from one pose to another, in fixed coordinates. A translation is exactly one.
 Pose motion_between(const Pose& from, const Pose& to) {
   Pose motion = Pose::Identity();
+  if (from.linear() == to.linear()) {
+    motion.translation() = difference(to.translation(), from.translation());
+    return motion;
+  }
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < 3; ++j) {
       motion.linear()(i, j) =
