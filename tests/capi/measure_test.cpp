@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -231,7 +233,9 @@ TEST_F(CMeasure, EscapeIsThatOfCpp) {
   EXPECT_EQ(result.upper, wanted.upper);
   EXPECT_EQ(result.verdicts, wanted.verdicts);
   EXPECT_GT(result.lower, 0.9);
-  ASSERT_EQ(name(ist_query_escape(query_, result.pose, 0, INFINITY, nullptr, &result)), "ok");
+  std::array<double, 16> freed{};
+  std::copy_n(result.pose, 16, freed.begin());
+  ASSERT_EQ(name(ist_query_escape(query_, freed.data(), 0, INFINITY, nullptr, &result)), "ok");
   EXPECT_EQ(result.status, IST_ESCAPE_NOT_NEEDED);
   EXPECT_EQ(result.upper, 0);
   ASSERT_EQ(name(ist_query_escape(query_, pose.data(), 0, 0.5, nullptr, &result)), "ok");
@@ -242,7 +246,7 @@ TEST_F(CMeasure, EscapeIsThatOfCpp) {
   EXPECT_EQ(name(ist_query_escape(query_, pose.data(), 0, INFINITY, &progress, &result)),
             "cancelled");
   EXPECT_EQ(result.status, IST_ESCAPE_UNKNOWN);
-  for (const double bad : {-1.0, NAN}) {
+  for (const double bad : {-1.0, std::nan("")}) {
     EXPECT_EQ(name(ist_query_escape(query_, pose.data(), bad, INFINITY, nullptr, &result)),
               "argument-invalid");
     EXPECT_EQ(name(ist_query_escape(query_, pose.data(), 0, bad, nullptr, &result)),
