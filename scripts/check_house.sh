@@ -73,5 +73,5 @@ twice=$(find src simd -name '*.h' -o -name '*.cpp' | xargs -n1 basename | sort |
 [ -z "$twice" ] || breach "two sources or headers share a name: $twice"
 never "a result names a folder of the machine that it was made on" '[ ="]/[a-zA-Z]+/[^" ]*' perf/results
 headers=$(($(grep -c '^ist/' src/package/public_headers.txt) + $(find src/{c,loop,models}/include -name '*.h' | wc -l)))
-[ "$headers" -le 37 ] || breach "$headers headers are installed: 37 are the most"
+[ "$headers" -le 38 ] || breach "$headers headers are installed: 38 are the most"
 exit $failed

@@ -15,6 +15,18 @@ ordered_json or_null(const std::optional<Number>& number) {
   return number ? ordered_json(*number) : ordered_json(nullptr);
 }
 
+ordered_json escape_json(const std::optional<Escape>& escape) {
+  if (!escape) return nullptr;
+  const bool has_motion =
+      escape->status == Escape::Status::kFound || escape->status == Escape::Status::kNotNeeded;
+  return {{"status", to_string(escape->status)},
+          {"motion", has_motion ? pose_json(escape->motion()) : ordered_json(nullptr)},
+          {"pose", has_motion ? pose_json(escape->pose()) : ordered_json(nullptr)},
+          {"lower", escape->lower},
+          {"upper", has_motion ? ordered_json(escape->upper) : ordered_json(nullptr)},
+          {"verdicts", escape->verdicts}};
+}
+
 }  // namespace
 
 ordered_json answer_line(std::size_t index, const PoseAnswer& answer,
@@ -69,6 +81,7 @@ ordered_json answer_line(std::size_t index, const PoseAnswer& answer,
   line["self_intersecting"] = or_null(found.self_intersecting);
   line["depth_at_vertices"] = or_null(found.depth.at_vertices);
   line["depth_point"] = point_json(found.depth.point);
+  line["escape"] = escape_json(found.escape);
   line["contacts"] = or_null(found.contacts);
   line["contact_depth"] = or_null(found.contact_depth);
   line["area"] = or_null(found.depth.area);

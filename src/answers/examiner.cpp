@@ -56,7 +56,7 @@ Examiner::Examiner(const Bodies& bodies, const Questions& questions, const std::
       query_(bodies.fixed, bodies.moving, {.policy = bodies.query_policy(), .target = target}),
       open_fixed_(open_box(bodies.fixed, query_.has_triangles())),
       open_moving_(open_box(bodies.moving, query_.has_triangles())) {
-  if (questions.triangle_pairs || questions.depth) require_triangles(bodies);
+  if (questions.triangle_pairs || questions.depth || questions.escape) require_triangles(bodies);
   if (bodies.have_voxels()) manifold_.emplace(bodies.fixed, bodies.moving, bodies.policy);
   depth_.emplace(query_, bodies, depth_tolerance_);
   if (query_.has_triangles()) {
@@ -95,6 +95,7 @@ Findings Examiner::at(const Eigen::Isometry3d& pose) {
   find_self_intersections(found);
   find_contacts(pose, found);
   if (questions_.triangle_pairs) count_triangles(pose, found);
+  if (questions_.escape) find_escape(pose, found);
   return found;
 }
 
@@ -177,6 +178,14 @@ void Examiner::find_contacts(const Eigen::Isometry3d& pose, Findings& found) {
   for (const Contact& contact : manifold_->points()) {
     found.contact_depth = std::max(found.contact_depth.value_or(contact.depth), contact.depth);
   }
+}
+
+void Examiner::find_escape(const Eigen::Isometry3d& pose, Findings& found) {
+  std::uint64_t asked = 0;
+  const auto goes_on = [&](double) { return asked++ < budget_.tests; };
+  found.escape = escape(query_, pose, {.tolerance = depth_tolerance_, .proceed = goes_on});
+  if (found.escape->status != Escape::Status::kUnknown) return;
+  found.notes.emplace_back("escape: stopped before a motion was found: allow more --max-tests");
 }
 
 void Examiner::count_triangles(const Eigen::Isometry3d& pose, Findings& found) {

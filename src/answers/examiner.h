@@ -8,6 +8,7 @@
 
 #include "answers/bodies.h"
 #include "answers/depth_meter.h"
+#include "ist/measure/escape.h"
 #include "ist/query/inside.h"
 #include "ist/query/query.h"
 
@@ -18,7 +19,9 @@ struct Questions {
   /// Tolerances, mesh units; by default a 10,000th of the smaller body's largest extent.
   std::optional<double> distance, depth;
   bool triangle_pairs = false;  ///< count all intersecting pairs
-  /// The most tests of bounds, and points of depth, that each question may take.
+  bool escape = false;          ///< find a motion that frees the bodies
+  /// The most tests of bounds, points of depth, and verdicts of an escape, that each question may
+  /// take.
   std::optional<std::uint64_t> max_tests;
 };
 
@@ -38,6 +41,7 @@ struct Findings {
   std::optional<double> narrowest{};  ///< the width below which the distance cannot be told
   std::optional<NearPair> nearest{};  ///< triangles whose distance lies in the interval
   Depth depth;
+  std::optional<Escape> escape{};
   /// Whether a surface intersects itself. Inside is by winding numbers then.
   std::optional<bool> self_intersecting{};
   std::optional<std::uint64_t> contacts{};  ///< contact points of voxels
@@ -67,6 +71,7 @@ class Examiner {
   void find_distance(const Eigen::Isometry3d& pose, Findings& found);
   void find_self_intersections(Findings& found) const;
   void find_contacts(const Eigen::Isometry3d& pose, Findings& found);
+  void find_escape(const Eigen::Isometry3d& pose, Findings& found);
   void count_triangles(const Eigen::Isometry3d& pose, Findings& found);
 
   [[nodiscard]] const std::string& name_of(bool moving) const {

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 #include <string_view>
 
 #include "cli/terminal.h"
 #include "ist/base/counted.h"
+#include "ist/measure/first_contact.h"
 
 namespace ist::cli {
 
@@ -47,6 +49,26 @@ std::string depth_of(const Findings& found) {
   return fmt::format("at least {:.3g} (open surface, by vertices)", *depth.at_vertices);
 }
 
+// A translation as a vector; another motion as a screw.
+std::string words_of(const Escape& escape, const Eigen::Isometry3d& pose) {
+  switch (escape.status) {
+    case Escape::Status::kNotNeeded:
+      return "0: the bodies are free";
+    case Escape::Status::kFound:
+      break;
+    default:
+      return fmt::format("at least {:.6g}: no motion was found", escape.lower);
+  }
+  const std::string length = words_of(DistanceInterval{escape.lower, escape.upper});
+  if (escape.rotation.isIdentity(0)) {
+    return fmt::format("{} by {}", length, words_of(escape.translation));
+  }
+  const Motion screw = Motion::between(pose, escape.pose());
+  return fmt::format("{} by {:.4g} degrees about {} through {}, and {:.4g} along it", length,
+                     screw.angle() * 180 / std::numbers::pi, words_of(screw.axis()),
+                     words_of(screw.point()), screw.along());
+}
+
 std::string words_of(const std::optional<double>& number) {
   return number ? fmt::format("{:.4g}", *number) : "-";
 }
@@ -72,9 +94,13 @@ std::vector<std::string> shared_notes(const std::vector<PoseAnswer>& answers) {
   return shared;
 }
 
-// Notes of this row alone, and which body lies in the other.
-std::string rest_of(const Findings& found, const std::vector<std::string>& shared) {
+// Notes of this row alone, which body lies in the other, and the escape.
+std::string rest_of(const PoseAnswer& answer, const std::vector<std::string>& shared) {
+  const Findings& found = answer.findings;
   std::string rest = inside_of(found);
+  if (found.escape) {
+    rest += (rest.empty() ? "escape " : "; escape ") + words_of(*found.escape, answer.pose);
+  }
   for (const std::string& note : found.notes) {
     if (std::find(shared.begin(), shared.end(), note) != shared.end()) continue;
     rest += (rest.empty() ? "" : "; ") + note;
@@ -96,6 +122,7 @@ void print_one(const PoseAnswer& answer, const Bodies& bodies) {
   std::string depth = depth_of(found);
   if (found.depth.point) depth += " at " + words_of(*found.depth.point);
   line("depth", depth);
+  if (found.escape) line("escape", words_of(*found.escape, answer.pose));
   line("area", words_of(found.depth.area));
   if (found.triangle_pairs)
     line("triangles", counted(*found.triangle_pairs, "pair meets", "pairs meet"));
@@ -125,7 +152,7 @@ void print_rows(const std::vector<PoseAnswer>& answers) {
                word_of(found.touch, 7), found.distance ? words_of(*found.distance) : "-",
                depth_of(found), wide, words_of(found.depth.area));
     if (triangles) fmt::print(" {:>9}", words_of(found.triangle_pairs));
-    const std::string rest = rest_of(found, shared);
+    const std::string rest = rest_of(answers[i], shared);
     fmt::print("{}{}\n", rest.empty() ? "" : "  ", rest);
   }
   for (const std::string& note : shared) fmt::print("note: {}\n", note);

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -7,6 +9,7 @@
 #include "c_bodies.h"
 #include "ist/capi/ist_measure.h"
 #include "ist/measure/comparison.h"
+#include "ist/measure/escape.h"
 #include "ist/measure/first_contact.h"
 #include "ist/measure/occlusion.h"
 #include "ist/measure/penetration.h"
@@ -252,6 +255,42 @@ TEST_F(CMeasure, FirstContactIsThatOfCpp) {
   EXPECT_EQ(name(ist_query_first_contact(query_, &motion, 1e-4, nullptr, nullptr, &result)),
             "null-argument");
   EXPECT_EQ(result.outcome, IST_FIRST_UNKNOWN);
+}
+
+TEST_F(CMeasure, EscapeIsThatOfCpp) {
+  const auto pose = down_by(3, 0, 4);
+  auto result = sized<ist_escape>();
+  ASSERT_EQ(name(ist_query_escape(query_, pose.data(), 0.01, INFINITY, nullptr, &result)), "ok");
+  const Escape wanted =
+      escape(cpp_, Eigen::Isometry3d(Eigen::Translation3d(3, 0, 4)), {.tolerance = 0.01});
+  EXPECT_EQ(result.status, IST_ESCAPE_FOUND);
+  EXPECT_EQ(std::memcmp(result.pose, wanted.pose().matrix().data(), sizeof result.pose), 0);
+  EXPECT_EQ(std::memcmp(result.motion, wanted.motion().matrix().data(), sizeof result.motion), 0);
+  EXPECT_EQ(result.lower, wanted.lower);
+  EXPECT_EQ(result.upper, wanted.upper);
+  EXPECT_EQ(result.verdicts, wanted.verdicts);
+  EXPECT_GT(result.lower, 0.9);
+  std::array<double, 16> freed{};
+  std::copy_n(result.pose, 16, freed.begin());
+  ASSERT_EQ(name(ist_query_escape(query_, freed.data(), 0, INFINITY, nullptr, &result)), "ok");
+  EXPECT_EQ(result.status, IST_ESCAPE_NOT_NEEDED);
+  EXPECT_EQ(result.upper, 0);
+  ASSERT_EQ(name(ist_query_escape(query_, pose.data(), 0, 0.5, nullptr, &result)), "ok");
+  EXPECT_EQ(result.status, IST_ESCAPE_NOT_FOUND);
+  EXPECT_EQ(result.upper, HUGE_VAL);
+  int reports = 0;
+  const auto progress = sized<ist_progress>({0, stop, &reports});
+  EXPECT_EQ(name(ist_query_escape(query_, pose.data(), 0, INFINITY, &progress, &result)),
+            "cancelled");
+  EXPECT_EQ(result.status, IST_ESCAPE_UNKNOWN);
+  for (const double bad : {-1.0, std::nan("")}) {
+    EXPECT_EQ(name(ist_query_escape(query_, pose.data(), bad, INFINITY, nullptr, &result)),
+              "argument-invalid");
+    EXPECT_EQ(name(ist_query_escape(query_, pose.data(), 0, bad, nullptr, &result)),
+              "argument-invalid");
+  }
+  const std::array<double, 16> no_pose{};
+  EXPECT_EQ(name(ist_query_escape(query_, no_pose.data(), 0, 1, nullptr, &result)), "pose-invalid");
 }
 
 TEST_F(CMeasure, SettleIsThatOfCpp) {

@@ -1,3 +1,4 @@
+#include <fstream>
 #include <tuple>
 
 #include "cli/cli_case.h"
@@ -116,6 +117,35 @@ TEST_F(Answers, ExactCountsTheTrianglesThatMeet) {
     EXPECT_TRUE(says(result.err, "plain.ist: the tree has no triangles"));
     EXPECT_TRUE(says(result.err, "--no-triangles"));
   }
+}
+
+TEST_F(Answers, EscapeTellsTheMotionThatFrees) {
+  const std::string small = cube(0.5);
+  const auto asked = json_lines(ist_well({"collide", ball_, small, "--escape", "--json"}).out);
+  const json& escape = asked.at(0)["escape"];
+  EXPECT_EQ(escape["status"], "found");
+  EXPECT_LE(escape["lower"], escape["upper"]);
+  EXPECT_GE(escape["lower"], asked[0]["depth_lower"]);
+  EXPECT_EQ(escape["motion"].size(), 16u);
+  // The pose after it is free.
+  const auto write = [&](const std::string& text) {
+    std::ofstream(path("freed.json")) << "[{\"pose\": " << text << "}]";
+  };
+  write(escape["pose"].dump());
+  const std::vector<std::string> again{"collide",          ball_,      small,   "--poses",
+                                       path("freed.json"), "--escape", "--json"};
+  const auto freed = json_lines(ist_well(again).out);
+  EXPECT_EQ(freed.at(0)["touch"], "no");
+  EXPECT_EQ(freed[0]["inside"], "none");
+  EXPECT_EQ(freed[0]["escape"]["status"], "not-needed");
+  EXPECT_EQ(freed[0]["escape"]["upper"], 0);
+  const CommandResult words = ist_well({"collide", ball_, small, "--escape"});
+  EXPECT_TRUE(says(words.out, "\nescape     ")) << words.out;
+  const CommandResult few = ist_well({"collide", ball_, small, "--escape", "--max-tests", "1"});
+  EXPECT_TRUE(says(few.out, "no motion was found")) << few.out;
+  EXPECT_TRUE(says(few.out, "allow more --max-tests"));
+  const std::string plain = tree_without_triangles("plain.ist");
+  EXPECT_EQ(ist({"collide", plain, plain, "--escape"}).exit_code, 2);
 }
 
 TEST_F(Answers, InsideIsTold) {

@@ -67,6 +67,7 @@ class QueryOutput : public CliTest {
         {"self_intersecting", Type::boolean},
         {"depth_at_vertices", Type::number_float},
         {"depth_point", deep ? Type::array : Type::null},
+        {"escape", Type::null},
         {"contacts", Type::number_unsigned},
         {"contact_depth", line["contacts"] > 0 ? Type::number_float : Type::null},
         {"area", Type::number_float},

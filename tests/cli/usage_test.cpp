@@ -48,6 +48,7 @@ TEST_F(Usage, HelpTeaches) {
         "--distance",
         "--depth",
         "--exact",
+        "--escape",
         "--spheres",
         "--engine",
         "--workers",

@@ -259,6 +259,21 @@ class Verbs(Jaws):
         with self.assertRaises(ist.MemoryLimitError):
             ist.build(box([-1, -1, -1], [1, 1, 1])).prepare_depth(max_memory=10)
 
+    def test_crossed_bars_escape_by_their_overlap(self):
+        query = ist.Query(ist.build(box([-5, -0.5, 0], [5, 0.5, 3])), ist.build(box([-0.5, -5, 0], [0.5, 5, 3])))
+        start = pose_of([0, 0, 1], 0, [0, 0, 1.5])
+        found = query.escape(start, 1e-4)
+        self.assertEqual(found.status, "found")
+        self.assertTrue(0.4999 <= found.lower <= 0.5 and 1.5 <= found.upper <= 1.5001)
+        self.assertIs(query.intersects(found.pose), False)
+        np.testing.assert_allclose(found.motion @ start, found.pose, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(np.linalg.norm(found.motion[:3, 3]), 1.5, rtol=0, atol=1e-4)
+        free = query.escape(found.pose)
+        self.assertEqual((free.status, free.lower, free.upper), ("not needed", 0, 0))
+        np.testing.assert_array_equal(free.motion, np.eye(4))
+        short = query.escape(start, longest=1.4)
+        self.assertEqual((short.status, short.upper), ("not found", np.inf))
+
     def test_a_box_settles_on_a_plate(self):
         query = ist.Query(ist.build(box([-20, -20, -2], [20, 20, 0])), ist.build(box([-5, -5, 0], [5, 5, 10])))
         start = pose_of([1, 0, 0], 0.01, [0.5, 0.25, 0.6])

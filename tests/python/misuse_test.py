@@ -202,7 +202,7 @@ class Queries(Misuse):
                  lambda pose: ist.distance_map(self.tree, self.tree, pose), lambda pose: self.query.penetration(pose, 0.1),
                  lambda pose: self.query.near_pairs(pose, 0.1), lambda pose: self.query.near_parts(pose, (0, 0), 0.1),
                  lambda pose: self.query.first_contact(pose, EYE, 0.1), lambda pose: self.query.first_contact(EYE, pose, 0.1),
-                 self.query.settle]
+                 self.query.settle, self.query.escape]
         mirrored, scaled, nan, row = EYE.copy(), 2 * EYE, EYE.copy(), EYE.copy()
         mirrored[0, 0], nan[1, 3], row[3, 0] = -1, np.nan, 1
         scaled[3, 3] = 1
@@ -361,6 +361,8 @@ class Queries(Misuse):
             self.refuses(ist.InputError, "tolerance", self.query.distance, EYE, tolerance)
             self.refuses(ist.InputError, "tolerance", self.query.penetration, EYE, tolerance)
             self.refuses(ist.InputError, "tolerance", self.query.first_contact, EYE, EYE, tolerance)
+            self.refuses(ist.InputError, "tolerance", self.query.escape, EYE, tolerance)
+            self.refuses(ist.InputError, "longest", self.query.escape, EYE, longest=tolerance)
             self.refuses(ist.InputError, "tolerance", self.query.rows, EYE[None], tolerance=tolerance)
         self.refuses(ist.InputError, "most", self.query.leaf_pairs, EYE, most=-1)
         self.assertTrue(self.query.leaf_pairs(EYE, seconds=np.inf).complete)

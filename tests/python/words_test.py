@@ -31,6 +31,7 @@ near = query.near_pairs(np.eye(4), 0.1, most=20)
 parts: int = query.near_parts(np.eye(4), (0, 1), 9.0).count + near.count
 triangles: Optional[Tuple[int, int]] = query.distance(np.eye(4)).triangles
 outcome: str = query.first_contact(np.eye(4), np.eye(4), 0.1).outcome
+longest: float = query.escape(np.eye(4), longest=2.0).upper
 status: str = query.settle(np.eye(4), closing=(0, 0, 1), hold=["yaw"], within=(2.0, 0.05)).status
 low: float = query.distance(np.eye(4), 0.1).lower + ist.rotation_error(np.eye(4))
 way: float = ist.motion_between(np.eye(4), np.eye(4), (1, 2, 3)).along

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <type_traits>
 #include <vector>
 
@@ -215,6 +216,15 @@ TEST_P(FloatEnvironmentOfTheCInterface, ChangesNoDepth) {
         auto depth = sized<ist_penetration>();
         fine(ist_query_penetration(query, pose, tolerance_, nullptr, nullptr, nullptr, &depth));
         say(depth, record);
+      });
+}
+
+TEST_P(FloatEnvironmentOfTheCInterface, ChangesNoEscape) {
+  changes_no_answer(
+      "ist_query_escape", 300, [this](ist_query* query, const double* pose, Record& record) {
+        auto found = sized<ist_escape>();
+        fine(ist_query_escape(query, pose, tolerance_, INFINITY, nullptr, &found));
+        say(found, record);
       });
 }
 

@@ -42,12 +42,16 @@ void add_collide(CLI::App& app) {
       "collide", "Find where two bodies touch, how deep and how far, at one pose or many");
   const auto options = std::make_shared<CollideArguments>();
   add_query_options(*command, options->query);
+  command->add_flag("--escape", options->query.questions.escape,
+                    "find the shortest rigid motion that frees the bodies, 0.2 to 1 s a pose: its "
+                    "length is the way of the point that goes farthest");
   add_pose_options(*command, options->pose, Poses::kMany);
   add_example(*command,
               "touch is yes or no by triangles, near by voxels alone, and unknown where "
               "--max-tests ended the search.\n"
               "Examples: ist collide upper.stl lower.stl\n"
-              "          ist collide upper.stl lower.stl --move 0,0,-1.5 --turn x,2@0,40,0");
+              "          ist collide upper.stl lower.stl --move 0,0,-1.5 --turn x,2@0,40,0\n"
+              "          ist collide upper.stl lower.stl --escape");
   command->callback([options] { run(*options); });
 }
 

@@ -16,6 +16,7 @@ from ._answers import (
     BodyOcclusion,
     Contacts,
     Distance,
+    Escape,
     FirstContact,
     LeafPairs,
     LeastDistance,

@@ -200,6 +200,15 @@ class Penetration(NamedTuple):
     capped: bool = ...
     rotation_error: float = ...
 
+class Escape(NamedTuple):
+    status: Literal["found", "not needed", "not found", "unknown"]
+    motion: F8
+    pose: F8
+    lower: float
+    upper: float
+    verdicts: int
+    rotation_error: float
+
 class FirstContact(NamedTuple):
     outcome: Literal["contact", "none", "grazing", "touches at start", "inside at start", "stopped"]
     lower: float
@@ -327,6 +336,14 @@ class Query:
         seconds: float = 0.0,
         progress: Optional[Follow] = None,
     ) -> Penetration: ...
+    def escape(
+        self,
+        pose: ArrayLike,
+        tolerance: float = 0.0,
+        *,
+        longest: float = ...,
+        progress: Optional[Follow] = None,
+    ) -> Escape: ...
     def first_contact(
         self,
         start: ArrayLike,

@@ -132,6 +132,21 @@ class Penetration(NamedTuple):
     rotation_error: float = 0.0  # of the given pose: the largest entry of |RᵀR - I|
 
 
+class Escape(NamedTuple):
+    """The shortest rigid motion found that frees two bodies, mesh units: no triangles meet, and no body lies inside the other.
+
+    The length of a motion is the distance from a point's first to its last place, of the point that goes farthest.
+    """
+
+    status: str  # "found", "not needed", "not found", "unknown"
+    motion: np.ndarray  # (4, 4), from places at the given pose to places at `pose`, fixed coordinates
+    pose: np.ndarray  # (4, 4), moving to fixed coordinates after the motion
+    lower: float  # no motion that frees the bodies is shorter; 0 if a body is not closed
+    upper: float  # the motion is no longer; infinity without a motion
+    verdicts: int  # poses at which exact triangles were asked
+    rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|
+
+
 class FirstContact(NamedTuple):
     """The first contact along a motion: at `upper`, 0 to 1, triangles intersect; before `lower` none do."""
 

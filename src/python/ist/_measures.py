@@ -7,7 +7,7 @@ from ctypes import addressof
 import numpy as np
 
 from . import _c
-from ._answers import BodyOcclusion, FirstContact, Occlusion, Penetration, PoseChange, Settlement
+from ._answers import BodyOcclusion, Escape, FirstContact, Occlusion, Penetration, PoseChange, Settlement
 from ._arrays import address, budget_of, by_columns, count_of, floats, number_of, place_of, pose_of
 from ._c import (
     CONTACT_REGION,
@@ -15,6 +15,7 @@ from ._c import (
     ROW,
     SETTLE_CONTACT,
     SURFACE_DISTANCE,
+    Escape as EscapeResult,
     FirstContact as FirstContactResult,
     Motion,
     OcclusionArrays,
@@ -33,6 +34,7 @@ from ._tree import need_tree
 
 OUTCOMES = (None, "contact", "none", "grazing", "touches at start", "inside at start", "stopped")
 NOT_CLOSED = (None, "fixed", "moving")
+ESCAPED = ("unknown", "found", "not needed", "not found")
 SETTLED = ("unknown", "rests", "rests level", "left the box", "stopped", "no free pose")
 FREEDOMS = ("x", "y", "z", "roll", "pitch", "yaw")
 # The most contacts of an answer: more are left out, the weakest first.
@@ -93,6 +95,39 @@ def penetration(self, pose, tolerance, *, last=None, points=0, seconds=0.0, prog
             result.points,
             SELF_INTERSECTING[result.self_intersecting],
             result.capped == 1,
+            result.rotation_error,
+        )
+    finally:
+        self._lock.release()
+
+
+def escape(self, pose, tolerance=0.0, *, longest=np.inf, progress=None):
+    """A short rigid motion that frees the bodies, and the pose after it: no triangles meet, and no body lies inside the other.
+
+    p_fixed = pose @ p_moving. A translation ends within the tolerance of its last contact; 0 means a 10,000th of the moving body's bounding
+    radius. Motions longer than `longest` are not looked for.
+    """
+    handle = self._enter()
+    try:
+        at = pose_of(pose)
+        result = EscapeResult()
+        with Follower(progress) as follower:
+            status = LIBRARY.ist_query_escape(
+                handle,
+                address(at),
+                number_of(tolerance, "tolerance"),
+                number_of(longest, "longest"),
+                follower.address,
+                addressof(result),
+            )
+            follower.finish(status)
+        return Escape(
+            ESCAPED[result.status],
+            np.array(result.motion).reshape(4, 4).T.copy(),
+            np.array(result.pose).reshape(4, 4).T.copy(),
+            result.lower,
+            result.upper,
+            result.verdicts,
             result.rotation_error,
         )
     finally:

@@ -363,6 +363,7 @@ class Query(Lone):
             self._lock.release()
 
     penetration = _measures.penetration
+    escape = _measures.escape
     first_contact = _measures.first_contact
     settle = _measures.settle
     occlusion = _measures.occlusion_of
