@@ -66,7 +66,7 @@ struct EscapeOptions {
 ///
 /// The motion is a local minimum at best: a shorter one may exist, but none shorter than `lower`.
 /// `query` forgets its earlier questions. The same bits on every instruction set. Allocates. Cost:
-/// 0.1 to 0.5 s for jaws. Throws kTrianglesMissing, and kArgumentInvalid for a tolerance or a
+/// 0.03 to 1 s for jaws. Throws kTrianglesMissing, and kArgumentInvalid for a tolerance or a
 /// longest way that is negative or NaN.
 [[nodiscard]] IST_API Escape escape(Query& query, const Eigen::Isometry3d& pose,
                                     const EscapeOptions& options = {});

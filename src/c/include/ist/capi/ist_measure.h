@@ -116,7 +116,7 @@ typedef struct ist_escape {
  * 10,000th of the moving body's bounding radius. Motions longer than `longest`, which may be
  * INFINITY, are not looked for. The query forgets what earlier poses left. Errors:
  * IST_TRIANGLES_MISSING, IST_POSE_INVALID, IST_ARGUMENT_INVALID for a length that is negative or
- * NaN, IST_CANCELLED. Cost: 0.2 to 1 s for jaws. */
+ * NaN, IST_CANCELLED. Cost: 0.03 to 1 s for jaws. */
 IST_C_API ist_status ist_query_escape(ist_query* query, const double pose[16], double tolerance,
                                       double longest, const ist_progress* progress,
                                       ist_escape* result) IST_NOEXCEPT;
