@@ -28,7 +28,8 @@
 namespace ist {
 namespace {
 
-// Makes the depths of all rows faster, with the same balls in each process. Has cancellation points.
+// Makes the depths of all rows faster, with the same balls in each process. Has cancellation
+// points.
 void prepare_depths(std::uint64_t rows, const SphereTree& fixed, const SphereTree& moving) {
   Progress progress;
   progress.watch([&progress] {

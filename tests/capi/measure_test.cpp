@@ -151,8 +151,9 @@ TEST_F(CMeasure, PreparedBodiesHaveTheSameDepth) {
   const auto ask = [&](ist_penetration& result) {
     ist_query* query = nullptr;
     EXPECT_EQ(name(ist_query_create(large, small, nullptr, &query)), "ok");
-    EXPECT_EQ(name(ist_query_penetration(query, pose.data(), 1e-4, nullptr, nullptr, nullptr, &result)),
-              "ok");
+    EXPECT_EQ(
+        name(ist_query_penetration(query, pose.data(), 1e-4, nullptr, nullptr, nullptr, &result)),
+        "ok");
     EXPECT_EQ(name(ist_query_free(query)), "ok");
   };
   ask(before);

@@ -288,9 +288,11 @@ TEST_F(Answers, FirstContactIsFoundBetweenTheSteps) {
 // A horizontal triangle goes through another one between two poses in double.
 TEST_F(Answers, TrianglesThatPassThroughEachOtherMeet) {
   const std::string face = mesh("face.stl", triangle({-1, -1, 0.1}, {1, -1, 0.1}, {0, 1, 0.1}));
-  const std::string small = mesh("small.stl", triangle({-0.3, -0.2, 0}, {0.3, -0.2, 0}, {0, 0.2, 0}));
+  const std::string small =
+      mesh("small.stl", triangle({-0.3, -0.2, 0}, {0.3, -0.2, 0}, {0, 0.2, 0}));
   const auto between = [&](const char* from, const char* to) {
-    const auto told = ist_well({"approach", face, small, "--axis", "z", "--from", from, "--to", to, "--json"});
+    const auto told =
+        ist_well({"approach", face, small, "--axis", "z", "--from", from, "--to", to, "--json"});
     return json_lines(told.out).back();
   };
   const json found = between("3", "-3");

@@ -270,7 +270,8 @@ void expect_same(const std::vector<SurfaceDistance>& a, const std::vector<Surfac
 
 TEST(OuterBalls, AreMadeForManyDepthsOfClosedBodies) {
   const TriangleMesh ball = icosphere(4, 1);  // 5,120 triangles
-  const SphereTree fixed = build_tree(ball), moving = build_tree(ball), open = build_tree(open_strip(3));
+  const SphereTree fixed = build_tree(ball), moving = build_tree(ball),
+                   open = build_tree(open_strip(3));
   EXPECT_FALSE(prepare_depth_for(99, fixed, moving));
   EXPECT_FALSE(is_prepared_for_depth(fixed));
   EXPECT_FALSE(prepare_depth_for(1'000'000, fixed, open));

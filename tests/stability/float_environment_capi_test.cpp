@@ -220,12 +220,12 @@ TEST_P(FloatEnvironmentOfTheCInterface, ChangesNoDepth) {
 }
 
 TEST_P(FloatEnvironmentOfTheCInterface, ChangesNoEscape) {
-  changes_no_answer(
-      "ist_query_escape", 300, [this](ist_query* query, const double* pose, Record& record) {
-        auto found = sized<ist_escape>();
-        fine(ist_query_escape(query, pose, tolerance_, INFINITY, nullptr, &found));
-        say(found, record);
-      });
+  changes_no_answer("ist_query_escape", 300,
+                    [this](ist_query* query, const double* pose, Record& record) {
+                      auto found = sized<ist_escape>();
+                      fine(ist_query_escape(query, pose, tolerance_, INFINITY, nullptr, &found));
+                      say(found, record);
+                    });
 }
 
 TEST_P(FloatEnvironmentOfTheCInterface, ChangesNoFirstContact) {

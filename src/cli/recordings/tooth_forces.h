@@ -39,7 +39,8 @@ class ToothForces final : public TickReceiver {
  private:
   void add(std::uint32_t body, std::uint32_t triangle, const std::array<double, 3>& force) noexcept;
 
-  std::vector<std::vector<std::uint32_t>> tooth_of_;  // by body and triangle: its index, or kNoTooth
+  std::vector<std::vector<std::uint32_t>>
+      tooth_of_;  // by body and triangle: its index, or kNoTooth
   std::vector<Tooth> teeth_;
   // The teeth with contacts in a tick, and their forces.
   std::array<std::uint32_t, 2 * Tick::kMostPoints> touched_{};

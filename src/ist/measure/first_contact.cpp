@@ -87,8 +87,8 @@ class Advance {
     found_.rotation_error = motion.rotation_error();
     found_.narrowest = rounding_ / kStuck;
     tolerance_ = std::max(tolerance, found_.narrowest);
-    part_ = {rigid_at(0), rigid_at(0), motion.turning(), motion.velocity({0, 0, 0}), 0, way_,
-             rounding_};
+    part_ = {rigid_at(0), rigid_at(0), motion.turning(), motion.velocity({0, 0, 0}),
+             0,           way_,        rounding_};
   }
 
   FirstContact run() {

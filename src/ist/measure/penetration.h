@@ -132,10 +132,10 @@ constexpr std::uint64_t kMostBallBytes = std::uint64_t{1} << 30;
 IST_API void prepare_depth(const SphereTree& tree, std::uint64_t max_memory = kMostBallBytes,
                            Progress* progress = nullptr);
 
-/// Prepares both bodies if that takes less time than it saves in so many depths: from 100 depths on,
-/// and one for each 800 triangles. Bodies stay as they are if one is open, has no triangles, or so many
-/// that its balls may need more than kMostBallBytes. Throws kCancelled. Returns whether both bodies
-/// have outer balls.
+/// Prepares both bodies if that takes less time than it saves in so many depths: from 100 depths
+/// on, and one for each 800 triangles. Bodies stay as they are if one is open, has no triangles, or
+/// so many that its balls may need more than kMostBallBytes. Throws kCancelled. Returns whether
+/// both bodies have outer balls.
 IST_API bool prepare_depth_for(std::uint64_t depths, const SphereTree& fixed,
                                const SphereTree& moving, Progress* progress = nullptr);
 

@@ -21,8 +21,7 @@ SweptPairsResult swept_pairs(Query& query, const ScrewPart& part, std::size_t mo
   if (!use) return {.status = QueryStatus::kBusy, .complete = false};
   const Eigen::Isometry3d middle = to_isometry(part.middle);
   const double way = part.speed * part.half + 2 * part.pad;
-  const std::optional<detail::Approach> bodies =
-      s.approach(middle, way + s.triangle_error(middle));
+  const std::optional<detail::Approach> bodies = s.approach(middle, way + s.triangle_error(middle));
   if (!bodies) return {.status = QueryStatus::kInvalidPose, .complete = false};
   if (!bodies->roots.overlap) return {};
   if (s.triangles->is_too_far(bodies->relative)) return {.fits = false};

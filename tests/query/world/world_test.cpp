@@ -448,7 +448,8 @@ TEST(World, AnswersAsEachPairsOwnQueryAlongAMotion) {
 
 // A plate has the depth and the voxel size of a ball, and fewer nodes.
 TEST(World, HasRoomForTheTreeWithTheMostNodes) {
-  const SphereTree plate = triangle_tree(box({-1, -1, -0.01}, {1, 1, 0.01}), 32), ball = triangle_tree(icosphere(3, 1), 32);
+  const SphereTree plate = triangle_tree(box({-1, -1, -0.01}, {1, 1, 0.01}), 32),
+                   ball = triangle_tree(icosphere(3, 1), 32);
   ASSERT_EQ(plate.depth(), ball.depth());
   ASSERT_EQ(plate.voxel_size(), ball.voxel_size());
   World world;
@@ -460,7 +461,8 @@ TEST(World, HasRoomForTheTreeWithTheMostNodes) {
   std::vector<LeafPair> out(1 << 20), own(1 << 20);
   const WorldAnswer answer = world.ask(leaf_pairs_in(out));
   ASSERT_EQ(answer.pairs.size(), 1u);
-  EXPECT_EQ(answer.pairs[0].written, Query(ball, ball).leaf_pairs(shift({0.2, 0.1, 0}), own).leaf_pairs);
+  EXPECT_EQ(answer.pairs[0].written,
+            Query(ball, ball).leaf_pairs(shift({0.2, 0.1, 0}), own).leaf_pairs);
 }
 
 // The memory grows with the pairs that are near at a time, and not with all pairs.

@@ -12,10 +12,10 @@ namespace ist {
 /// that is at y has the velocity turning × y + drift.
 struct ScrewPart {
   RelativePose start, middle;      ///< the poses at the begin and in the middle of the part: rigid
-  Eigen::Vector3d turning, drift;   ///< angular velocity, and velocity at the origin
-  double half;                      ///< half of the part's length
-  double speed;                     ///< the most of any point of the moving body
-  double pad;                       ///< rounding of a coordinate at any pose of the part
+  Eigen::Vector3d turning, drift;  ///< angular velocity, and velocity at the origin
+  double half;                     ///< half of the part's length
+  double speed;                    ///< the most of any point of the moving body
+  double pad;                      ///< rounding of a coordinate at any pose of the part
 
   /// Returns the velocity of a point.
   [[nodiscard]] Eigen::Vector3d velocity(const Eigen::Vector3d& at) const noexcept;

@@ -96,8 +96,8 @@ enum {
   IST_ESCAPE_NOT_FOUND = 3   /**< no motion was found that is no longer than `longest` */
 };
 
-/** The shortest motion found that frees two bodies; lengths in mesh units. The length of a motion is
- * the distance from a point's first to its last place, of the point that goes farthest. */
+/** The shortest motion found that frees two bodies; lengths in mesh units. The length of a motion
+ * is the distance from a point's first to its last place, of the point that goes farthest. */
 typedef struct ist_escape {
   size_t struct_size;    /**< the size of this struct, bytes */
   double motion[16];     /**< from places at the given pose to places at `pose`, fixed coordinates,
@@ -111,8 +111,8 @@ typedef struct ist_escape {
   int32_t reserved;      /**< zero */
 } ist_escape;
 
-/** Finds a short motion that frees two bodies: no triangles meet, and if a body is closed, the other
- * one is not inside it. A translation ends within `tolerance` of its last contact; 0 means a
+/** Finds a short motion that frees two bodies: no triangles meet, and if a body is closed, the
+ * other one is not inside it. A translation ends within `tolerance` of its last contact; 0 means a
  * 10,000th of the moving body's bounding radius. Motions longer than `longest`, which may be
  * INFINITY, are not looked for. The query forgets what earlier poses left. Errors:
  * IST_TRIANGLES_MISSING, IST_POSE_INVALID, IST_ARGUMENT_INVALID for a length that is negative or
@@ -137,8 +137,9 @@ typedef struct ist_motion {
 /** How a motion goes. */
 enum {
   IST_FIRST_UNKNOWN = 0, /**< after an error */
-  IST_FIRST_CONTACT = 1, /**< at `upper` triangles intersect, before `lower` none do; see `passes` */
-  IST_FIRST_NONE = 2,    /**< none intersect on the whole motion */
+  IST_FIRST_CONTACT =
+      1,              /**< at `upper` triangles intersect, before `lower` none do; see `passes` */
+  IST_FIRST_NONE = 2, /**< none intersect on the whole motion */
   IST_FIRST_GRAZING = 3, /**< surfaces come within the tolerance, and were not found to meet */
   IST_FIRST_TOUCHES_AT_START = 4, /**< triangles intersect at the first pose */
   IST_FIRST_INSIDE_AT_START = 5,  /**< a body, or a part of it, lies inside the other */
@@ -147,16 +148,16 @@ enum {
 
 /** The first contact along a motion; lengths in mesh units. */
 typedef struct ist_first_contact {
-  size_t struct_size;        /**< the size of this struct, bytes */
-  double lower,              /**< the motion's parameter, 0 to 1, before which none intersect */
-      upper;                 /**< where the contact is at the latest; 1: none is known */
-  double distance_lower,     /**< the surfaces at `lower` are no nearer: 0 */
-      distance_upper;        /**< and no farther apart */
-  int32_t outcome;           /**< IST_FIRST_... */
-  int32_t grazed;            /**< 1: surfaces grazed before: the interval may be wider */
-  int32_t triangles_known;   /**< 1: the triangles intersect at `upper`, or pass through each other */
-  uint32_t fixed,            /**< the fixed mesh's triangle, where known */
-      moving;                /**< the moving mesh's */
+  size_t struct_size;      /**< the size of this struct, bytes */
+  double lower,            /**< the motion's parameter, 0 to 1, before which none intersect */
+      upper;               /**< where the contact is at the latest; 1: none is known */
+  double distance_lower,   /**< the surfaces at `lower` are no nearer: 0 */
+      distance_upper;      /**< and no farther apart */
+  int32_t outcome;         /**< IST_FIRST_... */
+  int32_t grazed;          /**< 1: surfaces grazed before: the interval may be wider */
+  int32_t triangles_known; /**< 1: the triangles intersect at `upper`, or pass through each other */
+  uint32_t fixed,          /**< the fixed mesh's triangle, where known */
+      moving;              /**< the moving mesh's */
   int32_t self_intersecting; /**< the sum of IST_..._SELF_INTERSECTING */
   double narrowest;          /**< the least tolerance that is reached here */
   uint64_t distances;        /**< lists of near pairs, and pairs that were measured */
@@ -168,8 +169,8 @@ typedef struct ist_first_contact {
                           at the start, or if rounding hides each distance */
   uint32_t place_triangles[2]; /**< of the fixed and of the moving mesh, that hold the points */
   int32_t place_known;         /**< 1: the place is known; 0: there was no contact */
-  int32_t passes;              /**< 1: triangles pass through each other between `lower` and `upper`,
-                                  and intersect at no pose that was tried */
+  int32_t passes; /**< 1: triangles pass through each other between `lower` and `upper`,
+                     and intersect at no pose that was tried */
 } ist_first_contact;
 
 /** Finds the first contact along a motion, and its place. From `lower` to `upper` no point of the
